@@ -13,6 +13,7 @@ from typing import ClassVar, NoReturn
 from cnc_ptp.channel.axis_homing import AxisHoming
 from cnc_ptp.channel.block_stream import BlockStream
 from cnc_ptp.channel.cycle_rows import CycleRows
+from cnc_ptp.channel.feed_per_turn import FeedPerTurn
 from cnc_ptp.channel.function_output import FunctionOutput
 from cnc_ptp.channel.measuring import Measuring
 from cnc_ptp.channel.offset_memory import OffsetMemory
@@ -40,7 +41,7 @@ from cnc_ptp.parameters.view.homing_view import IGNORE_ABSOLUTE
 from cnc_ptp.path.path_motion import PathMotion, PathPoint, begins_element
 from cnc_ptp.path.shape import AxisState
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
-from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, CycleBlock, CycleTick, Severity, SpindleBlock
+from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, Command, CycleBlock, CycleTick, Severity, SpindleBlock
 from cnc_ptp.protocol.channel_states import ChannelStateCode
 from cnc_ptp.protocol.commands import BAD_ARGUMENT
 from cnc_ptp.protocol.notes import START_STEP
@@ -62,6 +63,7 @@ HELD_BY_OVERRIDE = 22024
 FEED_WITHHELD = 22026
 INTERPRETER_SLOW = 22036
 THREAD_BROKEN = 22087
+SPINDLE_STANDS = 22140
 
 ENOUGH = 0.5
 """Fill of the buffer of blocks at which the interpreter has kept up again."""
@@ -95,7 +97,9 @@ class ChannelUnit(Unit):
         functions = FunctionOutput(parameters, spindles, request_numbers or numbers(1))
         self._path_spindle = PathSpindle(parameters.name, functions.spindles)
         on_path = [axes[node] for node in nodes]
-        self._motion = PathMotion(parameters, on_path, cycle_time, self._path_spindle.limits)
+        self._cutting_speed, self._feed_per_turn = functions.cutting_speed, FeedPerTurn(functions.spindles)
+        turns = self._feed_per_turn.turns
+        self._motion = PathMotion(parameters, on_path, cycle_time, self._path_spindle.limits, turns)
         self._axes = PathAxes(nodes, axes, self._motion)
         self._handshake_timeout = handshake_timeout
         self._handshake_cycles = round(handshake_timeout / cycle_time)
@@ -347,6 +351,7 @@ class ChannelUnit(Unit):
         rows = CycleRows(with_spindle=bool(spindle))
         self._add(rows, [self._motion.point])
         self._fill(rows, first_cycle, count + 1)
+        outgoing.commands += self._cutting_commands(first_cycle, rows, count)
         if self._sequence.phase in (Phase.IDLE, Phase.RAMP_DOWN):
             self.runs_out = False
         else:
@@ -361,11 +366,23 @@ class ChannelUnit(Unit):
             self._state = ended if self._is_mdi else self._initial_state({})
         self._unfinished = self._sequence.phase in OFF_PATH and rows.axes[count - 1] != self._motion.states
         if self._sequence.phase is Phase.IDLE:
-            self._offsets.rest(first_cycle + count, self._state.modal.coordinates)
+            self._offsets.rest(first_cycle + count, self._state.modal)
         block = self._channel_block(tick, rows, outgoing, path_active=on_path)
         if spindle:
             add_spindle(block, spindle, rows.spindle[:count])
         return block
+
+    def _cutting_commands(self, first_cycle: int, rows: CycleRows, count: int) -> list[Command]:
+        """G96: the speed for the position of the axes in the middle of the block, or where their cut ends in it."""
+        function, end = self._cutting_speed.function, rows.cut_end
+        if function is None or end < 0:
+            return []
+        states = rows.axes[end if end < count - 1 else count // 2]
+        radius = self._offsets.programmed([state[0] for state in states])[function.axis]
+        commands = self._cutting_speed.commands(first_cycle, radius)
+        if commands:
+            self._sequence.speed_follows(self._cutting_speed.nodes)
+        return commands
 
     def _update_progress(self) -> None:
         sequence = self._sequence
@@ -419,7 +436,7 @@ class ChannelUnit(Unit):
             done=self._sequence.phase is Phase.IDLE and not self._unfinished and not self._axes.beside,
             blocks_done=self._sequence.stream.done,
             blocks_total=self._sequence.stream.total,
-            programmed_position=self._offsets.programmed([state[0] for state in rows.axes[count - 1]]),
+            programmed_position=self._offsets.shown([state[0] for state in rows.axes[count - 1]]),
             offsets=self._offsets.news(),
             progress=self._progress.now.share,
             time_left=self._progress.now.time_left,
@@ -438,12 +455,15 @@ class ChannelUnit(Unit):
 
     def _follow_path(self, rows: CycleRows, missing: int, cycle: int) -> None:
         """Rows of the active block; it ends early when its motion does, at the exact instant inside a cycle."""
+        cuts = self._sequence.cuts
         try:
             points = self._motion.follow(missing)
         except CncError as error:
             self._fault_in_line(cycle, error)
             return
         self._add(rows, points, self._motion.spindle_states)
+        if cuts and points:
+            rows.cut_end = len(rows) - 1
         if self._motion.passes:
             self._sequence.pass_block(cycle + len(points))
             self._reach_offsets(cycle + len(points))
@@ -551,7 +571,7 @@ class ChannelUnit(Unit):
         self._links = state.modal.spindle.links
         self._state = self._initial_state({})
         self._state_at_end, self._is_mdi = state, command == "mdi"
-        self._offsets.begin(cycle, before.modal.coordinates)
+        self._offsets.begin(cycle, before.modal)
         self._progress = ProgramProgress(times, program.size)
         self._sequence.begin(stream, program=command == "start")
         self._just_started = True
@@ -601,8 +621,10 @@ class ChannelUnit(Unit):
                 self._check_refused(first_cycle, node, block)
         self._read(self._sequence.read, first_cycle)
         self._read(self._read_path_spindle, first_cycle)
+        self._motion.follow_spindle()
         self._warn(first_cycle)
         self._report_held(first_cycle)
+        self._report_standing(first_cycle)
 
     def _read(self, read: Callable[[int, Mapping[str, CycleBlock]], None], first_cycle: int) -> None:
         """What the path or the program reads of the reports, which may be a fault of the active block."""
@@ -627,6 +649,13 @@ class ChannelUnit(Unit):
                 text = f"channel {self.name}: the program waits in line {line} for {what}"
                 self.event(cycle, Severity.WARNING, HELD_BY_OVERRIDE, text, line)
         self._held = held
+
+    def _report_standing(self, cycle: int) -> None:
+        """The path waits for a spindle (G95): a warning, once."""
+        node, line = self._feed_per_turn.awaited(self._motion), self._sequence.source.line
+        if node:
+            text = f"channel {self.name}: the path waits in line {line} for spindle {node} to turn (G95)"
+            self.event(cycle, Severity.WARNING, SPINDLE_STANDS, text, line)
 
     def _path_held(self) -> bool:
         """Override 0 alone has stopped the path within an element; a feed hold is visible anyway."""

@@ -102,6 +102,11 @@ class CommandedSpindle:
         return self._responsible_next is not None or bool(self._expected_next) or (self.responsible and not self.turns)
 
     @property
+    def unsent(self) -> bool:
+        """A function of the program goes out with the next block."""
+        return self._responsible_next is not None or bool(self._expected_next)
+
+    @property
     def stops_at_program_end(self) -> bool:
         """The PLC wants it stopped with the program (2.4.3)."""
         return self.block is not None and bool(self.block.status_bits[-1] & SpindleBit.STOP_AT_PROGRAM_END)

@@ -23,6 +23,8 @@ class CycleRows:
         self.distance_to_go: list[float] = []
         self.state: list[int] = []
         self.error_id: list[int] = []
+        self.cut_end = -1
+        """The last row in which the path moves at a feed, -1 none."""
 
     def __len__(self) -> int:
         return len(self.axes)

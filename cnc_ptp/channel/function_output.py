@@ -13,6 +13,7 @@ from typing import Any
 
 from cnc_ptp.channel.commanded_spindle import CommandedSpindle
 from cnc_ptp.channel.control_functions import control_commands, reset_commands
+from cnc_ptp.channel.cutting_speed import ConstantCuttingSpeed
 from cnc_ptp.channel.handshake import UNSENT
 from cnc_ptp.channel.spindle_functions import SpindleFunctions
 from cnc_ptp.channel.spindle_reports import NOTHING, Expectation
@@ -22,6 +23,7 @@ from cnc_ptp.nc.canonical import (
     AxisFeedforward,
     CanonicalBlock,
     CompensationSwitch,
+    CuttingSpeed,
     ExplicitSynchronisation,
     Function,
     GearChange,
@@ -52,6 +54,7 @@ class FunctionOutput:
         self._channel = channel
         self._request_numbers = request_numbers
         self.spindles = SpindleFunctions(channel, units)
+        self.cutting_speed = ConstantCuttingSpeed(self.spindles)
 
     def of_block(self, block: CanonicalBlock, moment: Moment) -> Outgoing:
         """The functions of `block` that go out at `moment`."""
@@ -63,6 +66,7 @@ class FunctionOutput:
 
     def at_program_start(self) -> list[Command]:
         """Resets what a program start sets back to its initial state."""
+        self.cutting_speed.end()
         return reset_commands(self._channel)
 
     def moment(self, function: Function) -> Moment:
@@ -79,7 +83,7 @@ class FunctionOutput:
                 synchronisation = self._synchronisation(function)
                 waits = waits_until(synchronisation)
                 return goes_out(synchronisation) is Moment.BEFORE and waits in (None, Moment.EXPLICIT)
-            case Message() | LanguageWarning() | ExplicitSynchronisation():
+            case Message() | LanguageWarning() | ExplicitSynchronisation() | CuttingSpeed():
                 return True
             case OrderedError():
                 return not function.severe
@@ -121,6 +125,7 @@ class FunctionOutput:
 
     def at_program_end(self, source: Source) -> Outgoing:
         """M05 for the spindles that the PLC wants stopped with the program (2.4.3); the others continue to turn."""
+        self.cutting_speed.end()
         stopped = [spindle for spindle in self.spindles.turning if (spindle.leader or spindle).stops_at_program_end]
         self._forget_leaders()
         return self._stop(stopped, source, homes=True)
@@ -130,6 +135,7 @@ class FunctionOutput:
         so that a slave stops whoever has commanded its master.
         """
         self._forget_leaders()
+        self.cutting_speed.end()
         others = [spindle for spindle in self.spindles if spindle.node not in keep]
         moving = [spindle for spindle in others if spindle.responsible or spindle.coupled]
         outgoing = self._stop(moving, source, homes=False)
@@ -189,6 +195,8 @@ class FunctionOutput:
                 self._link(function, outgoing, at_end=block.stop == "end")
             case AuxiliaryFunction():
                 self._auxiliary(function, block.source, outgoing)
+            case CuttingSpeed():
+                self.cutting_speed.take(function)
             case AxisFeedforward() | CompensationSwitch():
                 outgoing.commands += control_commands(self._channel, function)
                 outgoing.waits.append(Wait(Moment.NEXT_MOTION, until_sent=True))

@@ -10,7 +10,7 @@ from cnc_ptp.nc.coordinates.codes import LAST_OFFSET, offset_values
 from cnc_ptp.nc.coordinates.coordinates import NO_CHANGES, Coordinates
 from cnc_ptp.nc.coordinates.frame import IDENTITY, Frame, matrix
 from cnc_ptp.nc.coordinates.report import offset_report
-from cnc_ptp.nc.program import Channel
+from cnc_ptp.nc.program import Channel, ModalState
 from cnc_ptp.parameters.list_units import LARGEST_POSITION
 from cnc_ptp.protocol.blocks import ChannelOffsets
 
@@ -100,14 +100,14 @@ class OffsetMemory:
 
     # what is shown
 
-    def begin(self, cycle: int, coordinates: Coordinates) -> None:
+    def begin(self, cycle: int, state: ModalState) -> None:
         """A program starts with these."""
-        self.reach(cycle, 0, offset_report(self._channel, coordinates))
+        self.reach(cycle, 0, offset_report(self._channel, state))
 
-    def rest(self, cycle: int, coordinates: Coordinates) -> None:
+    def rest(self, cycle: int, state: ModalState) -> None:
         """No program runs: those with which an MDI text would start."""
         if self._stale:
-            self.begin(cycle, coordinates)
+            self.begin(cycle, state)
             self._stale = False
 
     def reach(self, cycle: int, line: int, report: OffsetReport) -> None:
@@ -127,8 +127,15 @@ class OffsetMemory:
         return news
 
     def programmed(self, position: Sequence[float]) -> list[float]:
-        """A machine position as programs name it now."""
+        """A machine position as programs name it now; radii also where `shown` has diameters."""
         return list(position if self._frame is None else self._frame.to_programmed(position))
+
+    def shown(self, position: Sequence[float]) -> list[float]:
+        """A machine position as it is displayed: the facing axis in diameters with G51, if P-CHAN-00256 wants that."""
+        programmed = self.programmed(position)
+        if self._shown is not None and self._shown.diameter >= 0:
+            programmed[self._shown.diameter] *= 2.0
+        return programmed
 
     def _message(self, cycle: int, line: int, report: OffsetReport) -> ChannelOffsets:
         return ChannelOffsets(

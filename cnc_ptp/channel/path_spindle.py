@@ -53,12 +53,7 @@ class PathSpindle:
 
     def limits(self, name: str) -> AxisLimits:
         """Of a spindle as an axis of the path, in the gear that it reports; deg, s. It has no limit of the jerk."""
-        spindle = self._spindles[name]
-        unit, block = spindle.unit, spindle.block
-        assert unit is not None
-        stage = block.gear[-1] if block is not None else unit.path_gear or unit.gear
-        gear = unit.gears.get(stage) or unit.gears[unit.gear]
-        limits = SpindleLimits(gear, spindle.tool, control_limit=inf if unit.open_loop else gear.control_limit)
+        limits, _ = limits_in_gear(self._spindles[name])
         speed = limits.max_positioning_speed
         up, down = limits.acceleration, limits.deceleration
         if isinstance(limits.ramp, AccelerationCurve):
@@ -105,6 +100,15 @@ class PathSpindle:
     def _send(self, command: str) -> None:
         assert self._spindle is not None
         self._commands.append(Command(self._spindle.node, command, {"source": self._channel}))
+
+
+def limits_in_gear(spindle: CommandedSpindle) -> tuple[SpindleLimits, int]:
+    """Limits of a spindle in the gear that it reports, with its tool, and the stage of the gear."""
+    unit, block = spindle.unit, spindle.block
+    assert unit is not None
+    stage = block.gear[-1] if block is not None else unit.path_gear or unit.gear
+    gear = unit.gears.get(stage) or unit.gears[unit.gear]
+    return SpindleLimits(gear, spindle.tool, control_limit=inf if unit.open_loop else gear.control_limit), stage
 
 
 def stands(spindle: CommandedSpindle) -> bool:

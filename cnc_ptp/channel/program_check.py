@@ -37,7 +37,17 @@ from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.interpreter import awaits_path, check, interpret, reads_the_run
 from cnc_ptp.nc.measuring import measures
 from cnc_ptp.nc.parser import NO_FILES, parse_all, parse_program
-from cnc_ptp.nc.program import Channel, ModalState, Pair, Pairs, Spindle, SpindleTable, Vocabulary
+from cnc_ptp.nc.program import (
+    Channel,
+    FacingAxis,
+    ModalState,
+    Pair,
+    Pairs,
+    Spindle,
+    SpindleTable,
+    TurningAxes,
+    Vocabulary,
+)
 from cnc_ptp.nc.program_text import ProgramText
 from cnc_ptp.nc.radius.radius_state import radius_settings
 from cnc_ptp.nc.recovery import MOST_ERRORS
@@ -155,6 +165,7 @@ class ProgramCheck:
             path_defaults(channel),
             self._references,
             radius_settings(channel),
+            turning=turning_axes(channel, self._axes),
         )
         """The channel as the interpreter knows it."""
         self._threads = thread_settings(channel, self._axes, 0.0)
@@ -199,6 +210,7 @@ class ProgramCheck:
             cycles=self.cycles,
             offsets=self._channel.offsets,
             soft_limits=self._soft_limits,
+            turning_axes=self.nc.turning,
             limits=self._limits,
             vocabulary=vocabulary or self.vocabulary,
         )
@@ -368,6 +380,7 @@ class ProgramCheck:
             tools=self._channel.tool_table,
             radius=self.nc.radius,
             references=self._references,
+            turning_axes=self.nc.turning,
             limits=self._limits,
             block_skip=self.block_skip,
             runs=True,
@@ -494,6 +507,16 @@ class ProgramCheck:
             raise ProgramError(SENSORLESS, f"{why} positioned", source, 1)
         if isinstance(function, SpindleCommand) and function.command == "home":
             raise ProgramError(NO_POSITION_VALUE, f"{why} homed", source, 1)
+
+
+def turning_axes(channel: ChannelParameters, axes: Sequence[AxisParameters]) -> TurningAxes:
+    """The facing axes of a channel, whose axes these are in its order."""
+    facing = [
+        FacingAxis(index, axis.diameter_absolute, axis.diameter_relative)
+        for index, axis in enumerate(axes)
+        if axis.facing
+    ]
+    return TurningAxes(tuple(facing), channel.shows_diameter, channel.cutting_speed_in_feet)
 
 
 def spindle_table(channel: ChannelParameters, spindles: Mapping[str, SpindleParameters]) -> SpindleTable:

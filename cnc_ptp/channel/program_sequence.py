@@ -243,6 +243,18 @@ class ProgramSequence:
             self._motion.take_spindle()
         return follows
 
+    @property
+    def cuts(self) -> bool:
+        """The path moves at a feed."""
+        motion = self._block.motion if self._block is not None and self.phase is Phase.MOTION else None
+        return isinstance(motion, CircularMove) or (isinstance(motion, LinearMove) and not motion.rapid)
+
+    def speed_follows(self, spindles: Container[str]) -> None:
+        """Nothing waits any longer for a programmed speed of these spindles (nodes): the facing axis changes it."""
+        for wait in self._waits:
+            if wait.expected.condition is Condition.SPEED and wait.expected.spindle in spindles:
+                wait.expected = Expectation(wait.expected.spindle)
+
     def _stop_spindles(self) -> None:
         """M05 for the spindles that the channel has started, except those to keep; its couplings end."""
         self._path_spindle.release()
@@ -366,6 +378,8 @@ class ProgramSequence:
         """What the program waits for that does not come with time alone; empty when it continues without help."""
         if self.phase is Phase.STOPPED:
             return "start"
+        if self.phase is Phase.MOTION and self._motion.awaited_spindle:
+            return f"spindle {self._functions.spindles[self._motion.awaited_spindle].node} to turn (G95)"
         if self.phase is Phase.MOTION and self._motion.held and self._motion.velocity == 0.0:
             return "an override above 0, the end of the feed hold or a feed release"
         if self.phase is Phase.MOTION and self._motion.thread is not None and self._motion.thread.waits_for:

@@ -14,6 +14,7 @@ from cnc_ptp.nc.canonical import (
     AxisFeedforward,
     CanonicalBlock,
     CompensationSwitch,
+    CuttingSpeed,
     Function,
     GearChange,
     SpindleCommand,
@@ -96,6 +97,8 @@ def group_of(function: Function) -> Group | None:
         return "command", function.spindle, function.command
     if isinstance(function, GearChange):
         return "gear", function.spindle, ""
+    if isinstance(function, CuttingSpeed):
+        return "cutting speed", function.spindle, ""
     if isinstance(function, SpindleLink):
         return "link", function.slave, ""
     if isinstance(function, AxisFeedforward):

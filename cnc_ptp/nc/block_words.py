@@ -60,7 +60,7 @@ class BlockWords:
             raise faults.UNKNOWN_G.at(self.source, token.column, word=token.shown)
         if code.later:
             raise faults.LATER.at(self.source, token.column, g=code.name, what=code.later)
-        if code.valued:
+        if code.valued and not code.bare:
             raise faults.CODE_VALUE.at(self.source, token.column, g=code.name)
         self._check_group(token, code, self.codes)
         self.codes.append(code)

@@ -79,13 +79,20 @@ class Thread(NamedTuple):
     change: float = 0.0
 
 
+class FeedPerTurn(NamedTuple):
+    """The path goes `feed` mm in each turn of a spindle, as fast as it really turns (G95)."""
+
+    spindle: str
+    feed: float
+
+
 class LinearMove(NamedTuple):
     """Straight move of all axes to `target` (mm); `feed` in mm/s along the path, 0.0 when `rapid`.
 
     `slope` of its acceleration, "" is that of P-CHAN-00071; `full_override`: G166, the override has no effect;
     `transition` to the next motion; `measures`: places of the axes of a measuring run, which the signal of the probe
     ends; `tap`: the spindle that turns with it; `thread`: a spindle leads the move, `feed` is what its speed amounts to
-    (0.0: not known).
+    (0.0: not known); `per_turn`: of G95, `feed` is that at the commanded speed.
     """
 
     target: tuple[float, ...]
@@ -97,6 +104,7 @@ class LinearMove(NamedTuple):
     measures: tuple[int, ...] = ()
     tap: Tap | None = None
     thread: Thread | None = None
+    per_turn: FeedPerTurn | None = None
 
 
 def led_by_spindle(motion: object) -> bool:
@@ -113,7 +121,7 @@ class CircularMove(NamedTuple):
 
     `plane` holds the axis indices (first, second), `center` is absolute in that plane (mm), `radius` in mm,
     `sweep` in degrees, positive from the first towards the second axis (G03), 0 < |sweep| <= 360; `feed` in mm/s;
-    `slope`, `full_override` and `transition` as in LinearMove.
+    `slope`, `full_override`, `transition` and `per_turn` as in LinearMove.
     `directions`: in a coordinate system that is tilted, where the two axes of the plane point in the machine; `center`
     is then along them. They are at right angles to each other and to the linear motion of X, Y and Z.
     """
@@ -128,6 +136,7 @@ class CircularMove(NamedTuple):
     full_override: bool = False
     transition: Transition = THROUGH
     directions: tuple[Direction, Direction] | None = None
+    per_turn: FeedPerTurn | None = None
 
     def turns(self, axis: int) -> bool:
         """Whether the axis with this index takes part in the circle."""
@@ -178,6 +187,18 @@ class GearChange(NamedTuple):
 
     spindle: str
     stage: int
+
+
+class CuttingSpeed(NamedTuple):
+    """G96: the speed of a spindle follows the facing axis, so that the cutting speed is `speed` mm/s; 0.0 ends it.
+
+    `max_rpm` of G196, 0.0 without; `axis`: place of the facing axis in the channel.
+    """
+
+    spindle: str
+    speed: float
+    max_rpm: float = 0.0
+    axis: int = 0
 
 
 class SpindleLink(NamedTuple):
@@ -285,6 +306,7 @@ Function = (
     SpindleFunction
     | SpindleCommand
     | GearChange
+    | CuttingSpeed
     | SpindleLink
     | ExplicitSynchronisation
     | WaitForPath
@@ -303,7 +325,8 @@ class OffsetReport(NamedTuple):
 
     machine = shift + matrix · programmed for X, Y, Z (matrix row by row), shift + programmed for the other axes.
     `zero_index`: 0 is G53, 1 G54; `scale` of #SCALE, `mirrored` by G21 to G23, `angle` of #ROTATION or None;
-    `systems`: #ACS and #CS that are on, the outermost first; `machine`: #MCS is on.
+    `systems`: #ACS and #CS that are on, the outermost first; `machine`: #MCS is on; `diameter`: place of the axis that
+    is shown in diameters (G51, P-CHAN-00256), -1 none.
     """
 
     zero_index: int
@@ -320,6 +343,7 @@ class OffsetReport(NamedTuple):
     machine: bool
     matrix: tuple[float, ...]
     shift: tuple[float, ...]
+    diameter: int = -1
 
 
 class CanonicalBlock(NamedTuple):

@@ -6,6 +6,7 @@ from cnc_ptp.nc.canonical import (
     CanonicalBlock,
     CompensationSwitch,
     ControlFunction,
+    CuttingSpeed,
     Dwell,
     ExplicitSynchronisation,
     Function,
@@ -52,6 +53,9 @@ def format_function(function: Function) -> str:
             return f"{spindle}[{command}]"
         case GearChange(spindle, stage):
             return f"{spindle}[gear {stage}]"
+        case CuttingSpeed(spindle, speed, most, axis):
+            limit = f" to {number(most)} rpm" if most else ""
+            return f"{spindle}[G96 {number(speed)} mm/s by axis {axis}{limit}]" if speed else f"{spindle}[G97]"
         case SpindleLink(slave, master, on, num, den):
             ratio = "" if num == den else f" {number(num)}/{number(den)}"
             return f"{'link' if on else 'unlink'} {slave}={master}{ratio}"
@@ -102,6 +106,8 @@ def _motion(motion: Motion) -> str:
         return "home " + ", then ".join(" ".join(group) for group in motion.groups)
     target, slope = _numbers(motion.target), f" slope {motion.slope}" if motion.slope else ""
     slope += " G166" if motion.full_override else ""
+    if motion.per_turn is not None:
+        slope = f", {number(motion.per_turn.feed)} mm per turn of {motion.per_turn.spindle}{slope}"
     slope += _transition(motion.transition)
     if isinstance(motion, LinearMove) and motion.thread is not None:
         return f"thread {target} {_thread(motion.thread)}"

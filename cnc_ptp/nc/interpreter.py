@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 
-from cnc_ptp.nc import tapping
+from cnc_ptp.nc import tapping, turning
 from cnc_ptp.nc.arcs import extreme_points
 from cnc_ptp.nc.block_search import BlockSearch
 from cnc_ptp.nc.canonical import (
@@ -33,7 +33,17 @@ from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.functions import block_functions
 from cnc_ptp.nc.measuring import Touch, measures, placed, results
 from cnc_ptp.nc.parser import NO_FILES, parse_all
-from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock, SpindleTable, Step, Vocabulary
+from cnc_ptp.nc.program import (
+    NO_TURNING_AXES,
+    Channel,
+    GCode,
+    ModalState,
+    NcBlock,
+    SpindleTable,
+    Step,
+    TurningAxes,
+    Vocabulary,
+)
 from cnc_ptp.nc.program_text import ProgramText
 from cnc_ptp.nc.radius.compensation import RadiusCompensation
 from cnc_ptp.nc.radius.radius_state import DEFAULT_SETTINGS, RadiusSettings
@@ -74,6 +84,7 @@ def interpret(
     radius: RadiusSettings = DEFAULT_SETTINGS,
     references: tuple[float, ...] = (),
     block_skip: int = 0,
+    turning_axes: TurningAxes = NO_TURNING_AXES,
     limits: Limits = LIMITS,
     values: Values | None = None,
     runs: bool = False,
@@ -89,7 +100,8 @@ def interpret(
     points where an axis turns back; it raises to refuse the move.
     `centre_offset` (mm, P-CHAN-00059), `centre_offset_ratio` (P-CHAN-00060 / 1000): how far the centre of an arc may be
     corrected, the smaller of both limits counts. `rotary`: axes in deg. `offsets` and `tools` of the machine, `radius`:
-    how that of tools is compensated, `soft_limits` of its axes for V.A., `references` for G28.
+    how that of tools is compensated, `soft_limits` of its axes for V.A., `references` for G28, `turning_axes` for G51
+    and G96.
     `block_skip`: bit n - 1 skips blocks with /n (`/` is /1).
     Blocks without function, motion or stop give nothing, nor does a move to the present position; offsets that they
     change come with the next block, those at the end with one of their own.
@@ -116,6 +128,7 @@ def interpret(
         tools,
         references=references,
         radius=radius,
+        turning=turning_axes,
     )
     state = initial_state(channel) if state is None else state
     state.position = tuple(start)
@@ -206,7 +219,7 @@ def _take_measured(channel: Channel, values: Values, motion: LinearMove, touch: 
 
 def _with_offsets(channel: Channel, state: ModalState, block: CanonicalBlock) -> CanonicalBlock:
     state.reported = True
-    return block._replace(offsets=offset_report(channel, state.coordinates))
+    return block._replace(offsets=offset_report(channel, state))
 
 
 def _resolve(
@@ -257,6 +270,8 @@ def _resolve(
     functions: tuple[Function, ...] = ()
     if path.number in tapping.CODES:
         functions = tapping.functions(channel, state, block, path)
+    elif turning.concerns(state, block):
+        functions = turning.functions(channel, state, block)
     elif block.functions and (path.spindle or not path.own_words):
         functions = block_functions(channel, state, block)
         note_functions(channel, state, block, functions)
@@ -289,7 +304,7 @@ def _moved(
     if not isinstance(motion, (LinearMove, CircularMove)):
         return motion
     programmed, compensated = motion.target, state.radius_compensation.on
-    motion = timed(channel, state, place(channel, state, block, motion))
+    motion = timed(channel, state, block, programmed, place(channel, state, block, motion))
     if isinstance(motion, LinearMove) and motion.measures:
         motion = placed(motion, state.position, block)
     elif motion.target == state.position and not isinstance(motion, CircularMove) and not compensated:
@@ -309,6 +324,8 @@ def _moved(
     if state.spindle.speedless:
         _require_speed(state, motion)
     state.position, state.programmed = motion.target, programmed
+    if state.turning.speed:
+        turning.follow(channel, state, motion)
     return motion
 
 
@@ -410,6 +427,7 @@ def check(
     cycles: Mapping[str, str] = NO_FILES,
     offsets: OffsetTables = NO_OFFSET_TABLES,
     soft_limits: tuple[tuple[float, float], ...] = (),
+    turning_axes: TurningAxes = NO_TURNING_AXES,
     limits: Limits = LIMITS,
     vocabulary: Vocabulary = TWINCAT,
 ) -> list[ProgramError]:
@@ -450,6 +468,7 @@ def check(
             tools=tools,
             radius=radius,
             references=references,
+            turning_axes=turning_axes,
             limits=limits,
             runs=True,
             recovery=recovery if recovers else None,

@@ -7,7 +7,7 @@ motion with an absolute target, or None if the block goes nowhere. The interpret
 from typing import NamedTuple
 
 from cnc_ptp.errors import Value
-from cnc_ptp.nc import arcs, faults, feeds
+from cnc_ptp.nc import arcs, faults, feeds, turning
 from cnc_ptp.nc.canonical import CircularMove, Dwell, LinearMove, number
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
 from cnc_ptp.nc.spindles import current_main
@@ -49,6 +49,8 @@ def target_of(channel: Channel, state: ModalState, block: NcBlock, code: GCode) 
             if any(word in other.words for other in block.codes):
                 continue
             raise _unused(channel, block, code, word)
+    if target is not None and state.turning.diameter is not None:
+        turning.take_diameter(channel, state, block, target)
     return target
 
 

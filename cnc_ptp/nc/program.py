@@ -25,7 +25,8 @@ class GCode(NamedTuple):
     makes functions of the block; with `takes_axes` they use the axis words, so that the block has no motion.
     `spindle`: the code makes a function of a spindle (G74, G167), besides its effect on the path. `prepare` changes
     the coordinates before the motion of its block; `valued`: it takes a value (G159=2). `later`: what it stands for is
-    not built yet, so it is refused when the program is read. `minor`: digit behind the point (G54.1).
+    not built yet, so it is refused when the program is read. `minor`: digit behind the point (G54.1). `bare`: one that
+    takes a value may stand without (G196).
     """
 
     number: int
@@ -42,6 +43,7 @@ class GCode(NamedTuple):
     valued: bool = False
     later: str = ""
     minor: int = 0
+    bare: bool = False
 
     @property
     def key(self) -> float:
@@ -259,6 +261,49 @@ class Tapping(NamedTuple):
 NO_TAPPING: Final = Tapping()
 
 
+class FacingAxis(NamedTuple):
+    """A facing axis (P-AXIS-00015) by its place: its words are diameters with G51 and G90, with G51 and G91."""
+
+    place: int
+    absolute: bool = True
+    relative: bool = False
+
+
+class TurningAxes(NamedTuple):
+    """Facing axes of a channel, and its settings of turning.
+
+    shown   G51 shows the facing axis in diameters (P-CHAN-00256)
+    feet    S of G96 is in ft/min with G70 (P-CHAN-00360)
+    """
+
+    facing: tuple[FacingAxis, ...] = ()
+    shown: bool = False
+    feet: bool = False
+
+
+NO_TURNING_AXES: Final = TurningAxes()
+
+
+class Turning(NamedTuple):
+    """Modal state of turning.
+
+    diameter   the axis of G51, None with G52
+    feed       F of G95, mm per turn
+    facing     place of the facing axis of G96, -1 with G97
+    speed      cutting speed, mm/s; 0: no S since G96
+    max_rpm    of G196, 0 without
+    """
+
+    diameter: FacingAxis | None = None
+    feed: float = 0.0
+    facing: int = -1
+    speed: float = 0.0
+    max_rpm: float = 0.0
+
+
+NO_TURNING: Final = Turning()
+
+
 class Drilling(NamedTuple):
     """Numbers of the drilling cycles of the vocabulary iso that stay from block to block.
 
@@ -309,7 +354,8 @@ class Channel(NamedTuple):
 
     `rotary`: axes in deg; `offsets` of the machine file; `soft_limits`: the lowest and highest position of each axis,
     empty for none. `path`: how the path goes from block to block at the start; `references`: position of the reference
-    point of each axis (P-AXIS-00152), empty for 0; `radius`: how the radius of tools is compensated.
+    point of each axis (P-AXIS-00152), empty for 0; `radius`: how the radius of tools is compensated; `turning`: facing
+    axes, and what the machine has for turning.
     """
 
     axes: tuple[str, ...]
@@ -325,6 +371,7 @@ class Channel(NamedTuple):
     path: PathDefaults = PATH_DEFAULTS
     references: tuple[float, ...] = ()
     radius: RadiusSettings = DEFAULT_SETTINGS
+    turning: TurningAxes = NO_TURNING_AXES
 
     @property
     def main(self) -> tuple[int, int, int]:
@@ -403,6 +450,7 @@ class ModalState:
     reported: bool = field(default=False, compare=False)
     drilling: Drilling = NO_DRILLING
     tapping: Tapping = NO_TAPPING
+    turning: Turning = NO_TURNING
     transition: Transition = THROUGH
     once: Transition | None = None
     contour: Contour = DEFAULT_CONTOUR
@@ -427,6 +475,7 @@ class ModalState:
         self.path, self.plane, self.absolute = other.path, other.plane, other.absolute
         self.centre_absolute, self.feed, self.radius = other.centre_absolute, other.feed, other.radius
         self.feed_mode, self.block_time = other.feed_mode, other.block_time
+        self.turning = self.turning._replace(diameter=other.turning.diameter, feed=other.turning.feed)
         changes = self.coordinates.changes
         self.slope, self.coordinates = other.slope, other.coordinates
         self.transition, self.contour = other.transition, other.contour

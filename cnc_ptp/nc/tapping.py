@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 from cnc_ptp.errors import Value
-from cnc_ptp.nc import faults, feeds, spindle_faults
+from cnc_ptp.nc import faults, feeds, spindle_faults, turning_faults
 from cnc_ptp.nc.canonical import Function, GearChange, LinearMove, SpindleFunction, Tap, number
 from cnc_ptp.nc.contour import EXACT_STOP
 from cnc_ptp.nc.functions import block_functions
@@ -58,6 +58,10 @@ def tap(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> Lin
     require_spindle(channel, block, code.name)
     _take_speed(channel, state, block, code)
     main = _tapping_spindle(channel, state)
+    if state.turning.facing >= 0:
+        raise _fault(turning_faults.TAPPING, block, code.name, g=code.name)
+    if state.feed_mode == feeds.PER_TURN:
+        raise _fault(turning_faults.TAPPING_FEED, block, code.name, g=code.name)
     if code.number != TAPPING:
         _take_pitch(state, block, code)
     target = target_of(channel, state, block, code)

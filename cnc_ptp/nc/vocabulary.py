@@ -15,6 +15,7 @@ from cnc_ptp.nc import (
     tapping,
     thread_cutting,
     transitions,
+    turning,
 )
 from cnc_ptp.nc.coordinates import codes
 from cnc_ptp.nc.program import GCode, MCode, ModalState, Vocabulary
@@ -86,8 +87,8 @@ _G_CODES = (
     *(GCode(code, "tool radius", select=radius_codes.side(code)) for code in (40, 41, 42)),
     GCode(138, "approach"),
     *(GCode(code, "approach", later=_APPROACH) for code in (139, 236, 237, 238, 239)),
-    GCode(51, "diameter", later="diameter programming of the face turning axis"),
-    GCode(52, "diameter"),
+    GCode(51, "diameter", prepare=turning.diameter_on),
+    GCode(52, "diameter", select=turning.diameter_off),
     *(GCode(code, "zero offset", prepare=codes.zero_offset) for code in range(53, 60)),
     GCode(159, "zero offset", prepare=codes.zero_offset, valued=True),
     GCode(160, "activity of offsets", function=codes.offset_activity, takes_axes=True, valued=True),
@@ -103,10 +104,10 @@ _G_CODES = (
     GCode(92, "reference offset", function=codes.reference_offset, takes_axes=True),
     GCode(93, "feed", select=feeds.time_of_block),
     GCode(94, "feed", select=feeds.per_minute),
-    GCode(95, "feed", later="feed per revolution"),
-    GCode(96, "cutting speed", later="constant cutting speed"),
-    GCode(97, "cutting speed"),
-    GCode(196, "cutting speed", later="constant cutting speed"),
+    GCode(95, "feed", select=feeds.per_turn),
+    GCode(turning.CONSTANT, turning.GROUP, prepare=turning.constant_on),
+    GCode(turning.SPEED, turning.GROUP),
+    GCode(turning.LARGEST, turning.LIMIT_GROUP, valued=True, bare=True),
     GCode(98, "software limits", function=codes.software_limit, takes_axes=True),
     GCode(99, "software limits", function=codes.software_limit, takes_axes=True),
     GCode(74, "path", motion=spindles.homing, modal=False, own_words=True, spindle=True),

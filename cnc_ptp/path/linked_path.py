@@ -48,7 +48,13 @@ def can_follow(motion: Path, following: Path) -> bool:
         return False
     alike = motion.full_override == following.full_override and motion.slope == following.slope
     blended = motion.transition.contour is not None or is_rapid(motion) == is_rapid(following)
-    return alike and blended and not motion.transition.stops and not taps(following)
+    return alike and blended and not motion.transition.stops and not taps(following) and turns_alike(motion, following)
+
+
+def turns_alike(motion: Path, following: Path) -> bool:
+    """Both have a feed per turn of the same spindle, or none has."""
+    first, second = motion.per_turn, following.per_turn
+    return first is second or (first is not None and second is not None and first.spindle == second.spindle)
 
 
 def taps(motion: Path) -> bool:

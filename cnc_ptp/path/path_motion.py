@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import NamedTuple
 
 from cnc_ptp.motion import Limits
 from cnc_ptp.motion.limits import check_limits
-from cnc_ptp.nc.canonical import STEP, Dwell, LinearMove
+from cnc_ptp.nc.canonical import STEP, Dwell, FeedPerTurn, LinearMove
 from cnc_ptp.parameters import AxisParameters, ChannelParameters
 from cnc_ptp.path.geometry import NEGLIGIBLE_MM, Arc, AxisLimits, Line
-from cnc_ptp.path.interpolator import PathInterpolator
+from cnc_ptp.path.interpolator import LARGEST_OVERRIDE, PathInterpolator
 from cnc_ptp.path.linked_path import LinkedPath, MotionSource, Path, is_rapid, taps
 from cnc_ptp.path.lookahead.look_ahead import LookAhead
 from cnc_ptp.path.lookahead.path_builder import LinkedMotion, PathBuilder
@@ -28,6 +29,8 @@ Evaluation = Callable[[float, float, float, float], AxisStates]
 """States of the axes from path length, velocity, acceleration and jerk."""
 SpindleLimits = Callable[[str], AxisLimits]
 """Limits of a spindle as an axis of the path, by its name in programs; deg, s."""
+SpindleTurns = Callable[[str], float]
+"""Turns per second of a spindle, by its name in programs."""
 AT_REST: AxisState = (0.0, 0.0, 0.0, 0.0)
 PathPoint = tuple[AxisStates, float, float]
 """One cycle on the path: the state of each axis, path velocity (mm/s), distance to the end of the element (mm)."""
@@ -86,10 +89,12 @@ class PathMotion:
         axes: Sequence[AxisParameters],
         cycle_time: float,
         spindle_limits: SpindleLimits | None = None,
+        spindle_turns: SpindleTurns | None = None,
     ) -> None:
         """`axes` in the order of the channel, standing at their start positions; `cycle_time` in s.
 
-        `spindle_limits`: those of a spindle, by its name in programs, as an axis of the path.
+        `spindle_limits`: those of a spindle, by its name in programs, as an axis of the path; `spindle_turns`: how fast
+        one really turns, for feeds per turn.
         """
         self._cycle_time = cycle_time
         self._feed_limits = feed_limits(axes)
@@ -98,6 +103,13 @@ class PathMotion:
         self._spindle_limits = spindle_limits
         self.spindle_states: list[AxisState] = []
         self.spindle_state = AT_REST
+        self._spindle_turns = spindle_turns
+        self._per_turn: FeedPerTurn | None = None
+        """Of the active motion."""
+        self._nominal_turns = 1.0
+        """Turns per second at which the path has the planned feed …"""
+        self._turning_factor = 1.0
+        """… and the real ones in relation to them."""
         self._taps = False
         """The spindle is the last coordinate of the active element."""
         self._threads = thread_settings(channel, axes, cycle_time)
@@ -276,6 +288,7 @@ class PathMotion:
             return
         plan = self.plan(motion, self.position)
         element, feed = plan.element, plan.feed
+        self._set_per_turn(motion)
         self._set_full_override(motion.full_override)
         if source is not None and self._link(plan, motion, source):
             return
@@ -331,7 +344,7 @@ class PathMotion:
         if isinstance(motion, LinearMove) and motion.thread is not None:
             return [angle_of(motion) / abs(motion.thread.speed) if motion.thread.speed else 0.0]
         plan = self.plan(motion, start)
-        path = self._linked_path(plan, motion, source, LookAhead(1.0, 0.0, cell_time))
+        path = self._linked_path(plan, motion, source, LookAhead(1.0, 0.0, cell_time), 0.0)
         return [plan.duration] if path is None else path.durations()
 
     def plan(self, motion: Path, start: tuple[float, ...]) -> Plan:
@@ -342,7 +355,8 @@ class PathMotion:
             axis_limits = [*axis_limits, self._spindle_limits(motion.tap.spindle)]
         if slope == STEP:
             axis_limits = [axis._replace(jerk=math.inf) for axis in axis_limits]
-        limits = element.limits(math.inf if rapid else motion.feed, axis_limits, 1.0 if rapid else self._max_override)
+        free = rapid or motion.per_turn is not None
+        limits = element.limits(math.inf if free else motion.feed, axis_limits, 1.0 if free else self._max_override)
         check_limits(limits)
         return Plan(element, limits, limits.velocity if rapid else motion.feed, slope)
 
@@ -360,30 +374,35 @@ class PathMotion:
     def _link(self, plan: Plan, motion: Path, source: MotionSource) -> bool:
         """Starts a path of several blocks if the next motion can be linked to this one."""
         ahead = LookAhead(self._interpolator.override, self._interpolator.next_offset)
-        path = self._linked_path(plan, motion, source, ahead)
+        path = self._linked_path(plan, motion, source, ahead, self._nominal_turns)
         if path is None:
             return False
         self._linked, self.feed = path, path.feed
         return True
 
-    def _linked_path(self, plan: Plan, motion: Path, source: MotionSource, ahead: LookAhead) -> LinkedPath | None:
+    def _linked_path(
+        self, plan: Plan, motion: Path, source: MotionSource, ahead: LookAhead, turns: float
+    ) -> LinkedPath | None:
+        """`turns`: turns per second for which feeds per turn are planned; 0.0: those of each motion."""
         following = None if motion.transition.stops else source.peek()
         if following is None:
             return None
         builder = PathBuilder(sorted(self._path_axes), self._cycle_time)
-        path = LinkedPath(ahead, builder, source, self._make_linked, steps=plan.steps)
-        return path if path.begin(self._linked_motion(plan, motion, 0), motion, following) else None
+        path = LinkedPath(ahead, builder, source, partial(self._make_linked, turns), steps=plan.steps)
+        return path if path.begin(self._linked_motion(plan, motion, 0, turns), motion, following) else None
 
-    def _make_linked(self, start: tuple[float, ...], motion: Path, block: int) -> LinkedMotion:
+    def _make_linked(self, turns: float, start: tuple[float, ...], motion: Path, block: int) -> LinkedMotion:
         plan = self.plan(motion, start)
-        return self._linked_motion(plan, motion, block)
+        return self._linked_motion(plan, motion, block, turns)
 
-    def _linked_motion(self, plan: Plan, motion: Path, block: int) -> LinkedMotion:
+    def _linked_motion(self, plan: Plan, motion: Path, block: int, turns: float) -> LinkedMotion:
         rapid = is_rapid(motion)
         limits = self._rapid_limits if rapid else self._feed_limits
         if plan.steps:
             limits = [stepping(axis, self._cycle_time) for axis in limits]
         feed = math.inf if rapid else motion.feed
+        if motion.per_turn is not None and turns:
+            feed = motion.per_turn.feed * turns
         return LinkedMotion(plan.element, limits, feed, block, motion.transition, plan.feed)
 
     def take_spindle(self) -> None:
@@ -429,12 +448,38 @@ class PathMotion:
         """
         self._held = held
         self._override = override
-        acting = 1.0 if self._full_override and not held else override
+        self._apply_override()
+        if self.thread is not None:
+            self.thread.release(override, held=held)
+
+    def _apply_override(self) -> None:
+        acting = 1.0 if self._full_override and not self._held else self._override
+        acting = min(acting * self._turning_factor, LARGEST_OVERRIDE)
         self._interpolator.set_override(acting)
         if self._linked is not None:
             self._linked.look_ahead.set_override(acting)
-        if self.thread is not None:
-            self.thread.release(override, held=held)
+
+    def _set_per_turn(self, motion: Path) -> None:
+        """The feed of the motion is that of a spindle, which the path follows from here on."""
+        per_turn = motion.per_turn
+        self._per_turn = per_turn
+        if per_turn is not None:
+            self._nominal_turns = motion.feed / per_turn.feed
+        self.follow_spindle()
+
+    def follow_spindle(self) -> None:
+        """Feed per turn: the velocity of the path changes with the speed of the spindle."""
+        factor = 1.0
+        if self._per_turn is not None and self._spindle_turns is not None:
+            factor = self._spindle_turns(self._per_turn.spindle) / self._nominal_turns
+        if factor != self._turning_factor:
+            self._turning_factor = factor
+            self._apply_override()
+
+    @property
+    def awaited_spindle(self) -> str:
+        """The spindle (name in programs) that stands, for which the path waits; empty for none."""
+        return self._per_turn.spindle if self._per_turn is not None and self._turning_factor == 0.0 else ""
 
     def _set_full_override(self, full: bool) -> None:
         if full != self._full_override:
@@ -469,7 +514,8 @@ class PathMotion:
                 self.spindle_state = (angle, 0.0, 0.0, 0.0)
                 target = target[: len(self.states)]
             self.states = standing(target)
-        self._element, self._taps = None, False
+        self._element, self._taps, self._per_turn = None, False, None
+        self.follow_spindle()
         self._set_full_override(False)
         self.velocity = self.distance_to_go = 0.0
 

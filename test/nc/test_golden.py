@@ -1,9 +1,9 @@
 """Good programs against their golden canonical streams, bad ones against the exact error text in their first line."""
 
 import pytest
-from nc_support import HERE, files_of, machine, tools, vocabulary_of
+from nc_support import HERE, files_of, machine, tools, turning_axes, vocabulary_of
 
-from cnc_ptp.nc import faults, spindle_faults, thread_faults
+from cnc_ptp.nc import faults, spindle_faults, thread_faults, turning_faults
 from cnc_ptp.nc.canonical_text import format_block
 from cnc_ptp.nc.coordinates import coordinate_faults
 from cnc_ptp.nc.expressions import expression_faults
@@ -32,6 +32,7 @@ PARTS = (
     faults,
     spindle_faults,
     thread_faults,
+    turning_faults,
     expression_faults,
     flow_faults,
     coordinate_faults,
@@ -44,7 +45,8 @@ FAULTS = [fault for part in PARTS for fault in faults_of(part)]
 def stream(text: str, file: str) -> list[str]:
     axes, spindles = machine(text)
     program = parse_program(text, file, files=files_of(text), vocabulary=vocabulary_of(text))
-    blocks = interpret(program, (0.0,) * len(axes), axes, spindles, tools=tools(text))
+    given = {"tools": tools(text), "turning_axes": turning_axes(text)}
+    blocks = interpret(program, (0.0,) * len(axes), axes, spindles, **given)
     return [format_block(block) for block in blocks]
 
 
@@ -59,6 +61,7 @@ def test_check_finds_nothing_in_good_programs(path):
     text = path.read_text()
     axes, spindles = machine(text)
     given = {"files": files_of(text), "vocabulary": vocabulary_of(text), "tools": tools(text)}
+    given["turning_axes"] = turning_axes(text)
     found = check(text, path.name, axes, spindles, **given)
     assert [error for error in found if error.number != faults.ORDERED.number] == []
 
@@ -82,6 +85,7 @@ def test_check_finds_the_same_error(path):
     text = path.read_text()
     axes, spindles = machine(text)
     given = {"files": files_of(text), "vocabulary": vocabulary_of(text), "tools": tools(text)}
+    given["turning_axes"] = turning_axes(text)
     found = [str(error) for error in check(text, path.name, axes, spindles, **given)]
     assert text.split("\n")[0].removeprefix("; ") in found
 

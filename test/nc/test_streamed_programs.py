@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from nc_support import HERE, files_of, machine, tools, vocabulary_of
+from nc_support import HERE, files_of, machine, tools, turning_axes, vocabulary_of
 
 from cnc_ptp.nc.canonical import BUSY, CanonicalBlock, LinearMove
 from cnc_ptp.nc.canonical_text import format_block
@@ -30,7 +30,9 @@ def opened(text: str, file: str = "a.nc") -> StreamedProgram:
 
 def stream(text: str, file: str) -> list[str]:
     axes, spindles = machine(text)
-    blocks = interpret(opened(text, file), (0.0,) * len(axes), axes, spindles, tools=tools(text))
+    blocks = interpret(
+        opened(text, file), (0.0,) * len(axes), axes, spindles, tools=tools(text), turning_axes=turning_axes(text)
+    )
     return [format_block(block) for block in blocks]
 
 

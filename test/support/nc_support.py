@@ -9,7 +9,15 @@ from cnc_ptp.nc.canonical_text import format_block
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.iso.vocabulary import ISO
 from cnc_ptp.nc.parser import parse_program
-from cnc_ptp.nc.program import Pair, Spindle, SpindleTable, Vocabulary
+from cnc_ptp.nc.program import (
+    NO_TURNING_AXES,
+    FacingAxis,
+    Pair,
+    Spindle,
+    SpindleTable,
+    TurningAxes,
+    Vocabulary,
+)
 from cnc_ptp.nc.vocabularies import VOCABULARIES
 from cnc_ptp.parameters import NO_TOOLS, Tool, ToolTable
 
@@ -94,6 +102,23 @@ def tools(text: str) -> ToolTable:
         if line.startswith("; tools"):
             return TOOLS[line.split()[2]]
     return NO_TOOLS
+
+
+FACING = {
+    "X": TurningAxes((FacingAxis(0),)),
+    "incremental": TurningAxes((FacingAxis(0, True, True),), shown=True, feet=True),
+    "off": TurningAxes((FacingAxis(0, False, False),)),
+    "X and Z": TurningAxes((FacingAxis(0), FacingAxis(2))),
+}
+"""What a program may name in a comment `; facing X` in one of its first three lines."""
+
+
+def turning_axes(text: str) -> TurningAxes:
+    """The facing axes that a program names."""
+    for line in text.split("\n")[:3]:
+        if line.startswith("; facing "):
+            return FACING[line.removeprefix("; facing ")]
+    return NO_TURNING_AXES
 
 
 def files_of(text: str) -> dict[str, str]:

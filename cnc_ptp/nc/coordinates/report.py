@@ -1,14 +1,14 @@
 """The offsets that count, as the canonical stream and the state topics show them."""
 
 from cnc_ptp.nc.canonical import OffsetReport
-from cnc_ptp.nc.coordinates.coordinates import Coordinates, Offsets
+from cnc_ptp.nc.coordinates.coordinates import Offsets
 from cnc_ptp.nc.coordinates.frame import IDENTITY
-from cnc_ptp.nc.program import Channel
+from cnc_ptp.nc.program import Channel, ModalState
 
 
-def offset_report(channel: Channel, coordinates: Coordinates) -> OffsetReport:
+def offset_report(channel: Channel, state: ModalState) -> OffsetReport:
     """Of the state of the coordinates."""
-    count = len(channel.axes)
+    count, coordinates, diameter = len(channel.axes), state.coordinates, state.turning.diameter
     frame = coordinates.frame(count, channel.main)
     own = coordinates.own
     zeros = (0.0,) * count
@@ -32,4 +32,5 @@ def offset_report(channel: Channel, coordinates: Coordinates) -> OffsetReport:
         machine=coordinates.outside is not None,
         matrix=(*linear[0], *linear[1], *linear[2]),
         shift=zeros if frame is None else frame.shift,
+        diameter=diameter.place if diameter is not None and channel.turning.shown else -1,
     )

@@ -13,8 +13,10 @@ from cnc_ptp.nc.coordinates.placement import refresh
 from cnc_ptp.nc.expressions import expression_faults as faults
 from cnc_ptp.nc.expressions.reading import Reading, Units, axis_of, in_mm, length
 from cnc_ptp.nc.expressions.values import Scalar, Values
+from cnc_ptp.nc.feeds import PER_TURN
 from cnc_ptp.nc.measuring import NOT_MEASURED, Measured
 from cnc_ptp.nc.tools.readings import TOOL_READINGS
+from cnc_ptp.nc.turning import as_programmed
 from cnc_ptp.parameters.list_units import LARGEST_POSITION
 
 LAST_TIMER: Final = 127
@@ -36,7 +38,13 @@ def spindle_of(values: Values, unit: Scalar, column: int) -> str:
 
 def programmed(values: Values, units: Units, column: int) -> Scalar:
     axis = axis_of(values, units[0], column)
-    return length(values, axis, values.state.programmed[axis])
+    return length(values, axis, as_programmed(values.state, axis, values.state.programmed[axis]))
+
+
+def last_feed(values: Values) -> float:
+    """mm/min, with G95 mm per turn."""
+    state = values.state
+    return state.turning.feed if state.feed_mode == PER_TURN else state.feed * 60.0
 
 
 def reference_offset(values: Values, units: Units, column: int) -> Scalar:
@@ -243,12 +251,12 @@ READABLE: Final[dict[str, tuple[tuple[tuple[str, ...], Reading], ...]]] = {
         (
             (),
             Reading(
-                "last F word, mm/min (inch/min)",
-                lambda values, u, c: values.state.feed * 60.0 / values.state.coordinates.unit,
+                "last F word, mm/min (inch/min), with G95 mm (inch) per turn",
+                lambda values, u, c: last_feed(values) / values.state.coordinates.unit,
             ),
         ),
     ),
-    "V.G.FEEDRATE_MODE": (((), Reading("93 or 94", lambda values, u, c: float(values.state.feed_mode))),),
+    "V.G.FEEDRATE_MODE": (((), Reading("93, 94 or 95", lambda values, u, c: float(values.state.feed_mode))),),
     "V.G.MASS_MM": (
         ((), Reading("0 with G71, 1 with G70", lambda values, u, c: float(values.state.coordinates.unit != 1.0))),
     ),

@@ -16,6 +16,8 @@ from cnc_ptp.parameters.view.telegram import DriveType
 
 MODULO, MODULO_LINEAR = 0x4, 0x400
 """Bits of P-AXIS-00015; the second one is for linear axes."""
+FACING = 0x40
+"""Bit of P-AXIS-00015."""
 SOFT_LIMITS = (ids.KENNGR_SWE_NEG, ids.KENNGR_SWE_POS)
 
 
@@ -31,6 +33,12 @@ class AxisParameters:
 
     Then the soft limits are infinite.
     """
+    facing: bool
+    """The facing axis of a lathe (P-AXIS-00015 0x40) …"""
+    diameter_absolute: Annotated[bool, ids.KENNGR_DURCHM_PROG_ABS]
+    """… whose words are diameters with G51 and G90 …"""
+    diameter_relative: Annotated[bool, ids.KENNGR_DURCHM_PROG_REL]
+    """… and with G51 and G91."""
     modulo_low: float
     modulo_high: float
     virtual: bool
@@ -88,6 +96,7 @@ def axis_view(parameters: ParameterSet, cycle_time: float) -> AxisParameters:
         name=parameters.node,
         rotary=parameters.axis_type == "R",
         modulo=modulo,
+        facing=bool(int(parameters.number(ids.KENNGR_ACHS_MODE)) & FACING),
         modulo_low=low if modulo else 0.0,
         modulo_high=high if modulo else 0.0,
         virtual=parameters.number(ids.KENNGR_ANTR_TYP) == DriveType.VIRTUAL,

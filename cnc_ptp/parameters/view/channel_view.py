@@ -126,6 +126,10 @@ class ChannelParameters:
     """… and its way, mm, signed."""
     signal_required: Annotated[bool, ids.MEAS_ERROR_NO_SIGNAL] = True
     """A measuring run without a signal of the probe is an error."""
+    shows_diameter: Annotated[bool, ids.DISPLAY_DIAMETER_POS] = False
+    """With G51 the channel shows the facing axis in diameters."""
+    cutting_speed_in_feet: Annotated[bool, ids.ENABLE_UNIT_FEET_CUT_SPEED] = False
+    """S of G96 is in ft/min with G70."""
     pitch_tolerance: float = 0.001
     """Ratio by which F / S of G63 may differ from a programmed pitch (P-CHAN-90020)."""
     contour_look_ahead: Annotated[int, ids.TOOL_RADIUS_LOOK_AHEAD] = 5

@@ -72,8 +72,9 @@ def with_equal_delays(
     for channel in channels:
         path = [late_axes[axis.node] for axis in channel.axes]
         turning = [late_spindles[spindle.node] for spindle in channel.spindles if spindle.node in spindles]
-        gears = [gear for spindle in turning for gear in spindle.gears.values()]
-        cycles = max((part.control.delay_cycles for part in (*path, *gears)), default=0)
+        controls = [axis.control for axis in path]
+        controls += [gear.control for spindle in turning for gear in spindle.gears.values()]
+        cycles = max((control.delay_cycles for control in controls), default=0)
         late_axes |= {axis.name: replace(axis, control=delayed(axis.control, cycles)) for axis in path}
         for spindle in turning:
             stages = {

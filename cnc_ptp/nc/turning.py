@@ -1,0 +1,262 @@
+"""Turning: diameters (G51, G52), feed per turn (G95), constant cutting speed (G96, G97, G196).
+
+The facing axis is the one of the active plane with P-AXIS-00015 0x40; the turning centre is its programmed position 0.
+Positions, centres and radii inside are radii, whatever the words were. Source: programming manual, turning functions.
+"""
+
+from __future__ import annotations
+
+from math import inf, pi
+from typing import Final
+
+from cnc_ptp.errors import Value
+from cnc_ptp.nc import faults, turning_faults
+from cnc_ptp.nc.canonical import CircularMove, CuttingSpeed, FeedPerTurn, Function, LinearMove, number
+from cnc_ptp.nc.coordinates.placement import PLANE_AXES
+from cnc_ptp.nc.functions import block_functions
+from cnc_ptp.nc.gears import speed_range
+from cnc_ptp.nc.program import Channel, FacingAxis, GCode, ModalState, NcBlock, Spindle
+from cnc_ptp.nc.spindles import current_main, require_spindle
+
+CONSTANT: Final = 96
+SPEED: Final = 97
+LARGEST: Final = 196
+GROUP: Final = "cutting speed"
+LIMIT_GROUP: Final = "largest speed"
+M_PER_MINUTE: Final = 1000.0 / 60.0
+FEET_PER_MINUTE: Final = 304.8 / 60.0
+"""mm/s"""
+SMALLEST_RADIUS: Final = 0.001
+"""mm; nearer to the turning centre the speed is that of this radius, if nothing limits it."""
+
+
+# diameters
+
+
+def diameter_on(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> None:
+    """G51: words of the facing axis are diameters. Raises ProgramError 20042, 20064, 21720."""
+    axis = _facing_axis(channel, state, block, code, turning_faults.NO_FACING_AXIS)
+    if not (axis.absolute or axis.relative):
+        raise _fault(turning_faults.NO_DIAMETERS, block, code.name, axis=channel.axes[axis.place])
+    state.turning = state.turning._replace(diameter=axis)
+    state.reported = False
+
+
+def diameter_off(state: ModalState) -> None:
+    """G52: words of the facing axis are radii."""
+    state.turning = state.turning._replace(diameter=None)
+    state.reported = False
+
+
+def take_diameter(channel: Channel, state: ModalState, block: NcBlock, target: list[float]) -> None:
+    """A word of the facing axis is a diameter, with G91 the change of one. Raises ProgramError 20019, 21721."""
+    axis = state.turning.diameter
+    assert axis is not None
+    name = channel.axes[axis.place]
+    if name not in block.words:
+        return
+    mirror = state.coordinates.mirror
+    if mirror and mirror[axis.place] < 0.0:
+        raise _fault(turning_faults.MIRRORED, block, name, axis=name, g="G21, G22 or G23")
+    radius = block.words[name] * state.coordinates.unit / 2.0
+    if state.absolute and axis.absolute:
+        if radius < 0.0:
+            raise _fault(turning_faults.NEGATIVE_DIAMETER, block, name, axis=name, value=number(block.words[name]))
+        target[axis.place] = radius
+    elif not state.absolute and axis.relative:
+        target[axis.place] = state.programmed[axis.place] + radius
+
+
+def as_programmed(state: ModalState, index: int, position: float) -> float:
+    """A position of an axis as absolute words name it: diameters with G51."""
+    axis = state.turning.diameter
+    return 2.0 * position if axis is not None and axis.place == index and axis.absolute else position
+
+
+def _facing_axis(channel: Channel, state: ModalState, block: NcBlock, code: GCode, missing: faults.Fault) -> FacingAxis:
+    """The one of the active plane. Raises ProgramError."""
+    names = PLANE_AXES[state.plane]
+    found = [axis for axis in channel.turning.facing if channel.axes[axis.place] in names]
+    plane = f"G{state.plane}"
+    if not found:
+        raise _fault(missing, block, code.name, g=code.name, plane=plane)
+    if len(found) > 1:
+        first, second = (channel.axes[axis.place] for axis in found)
+        raise _fault(
+            turning_faults.TWO_FACING_AXES, block, code.name, g=code.name, plane=plane, first=first, second=second
+        )
+    return found[0]
+
+
+# feed per turn
+
+
+def with_spindle(
+    channel: Channel,
+    state: ModalState,
+    block: NcBlock,
+    programmed: tuple[float, ...],
+    motion: LinearMove | CircularMove,
+) -> LinearMove | CircularMove:
+    """G95: the motion with its feed in a turn, and that at the commanded speed. Raises ProgramError 50499, 21548.
+
+    A spindle of the PLC reports no speed: there the programmed one counts.
+    """
+    word = "F" if "F" in block.words else _g_name(block)
+    require_spindle(channel, block, "G95")
+    main = current_main(channel, state)
+    speed, modal = state.speeds.get(main.key, 0.0), state.turning
+    if modal.speed:
+        speed = speed_at(state, main, 0.5 * (state.programmed[modal.facing] + programmed[modal.facing]))
+    if not speed:
+        raise _fault(turning_faults.SPEED_ZERO, block, word, spindle=main.key)
+    link = None if main.plc_control else FeedPerTurn(main.key, modal.feed)
+    return motion._replace(feed=modal.feed * speed / 60.0, per_turn=link)
+
+
+def _g_name(block: NcBlock) -> str:
+    return next((code.name for code in block.codes if code.motion is not None), "")
+
+
+# constant cutting speed
+
+
+def constant_on(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> None:
+    """G96: S is a cutting speed from here on. Raises ProgramError 20634, 20064, 21548, 21724."""
+    require_spindle(channel, block, code.name)
+    main = current_main(channel, state)
+    if main.plc_control:
+        raise _fault(turning_faults.PLC_SPINDLE, block, code.name, g=code.name, spindle=main.key)
+    axis = _facing_axis(channel, state, block, code, turning_faults.NO_FACING_AXIS_FOR_SPEED)
+    if state.turning.facing < 0:
+        state.turning = state.turning._replace(facing=axis.place, speed=0.0)
+
+
+def concerns(state: ModalState, block: NcBlock) -> bool:
+    """S of the block may be no speed in rpm, or a function of turning is in it."""
+    groups = (GROUP, LIMIT_GROUP)
+    return state.turning.facing >= 0 or any(code.group in groups for code in block.codes)
+
+
+def functions(channel: Channel, state: ModalState, block: NcBlock) -> tuple[Function, ...]:
+    """Those of the block, with S as the turning functions mean it."""
+    numbers = [code.number for code in block.codes]
+    told: tuple[Function, ...] = ()
+    if LARGEST in numbers:
+        block = _take_limit(channel, state, block, with_constant=CONSTANT in numbers)
+    if SPEED in numbers:
+        told = _constant_off(channel, state)
+    elif state.turning.facing >= 0:
+        block, told = _take_cutting_speed(channel, state, block)
+    return told + (block_functions(channel, state, block) if block.functions else ())
+
+
+def _take_limit(channel: Channel, state: ModalState, block: NcBlock, *, with_constant: bool) -> NcBlock:
+    """G196 S2500, G196=2500: the block without this S. Raises ProgramError 120169, 21722, 21723, 21548."""
+    require_spindle(channel, block, "G196")
+    value = (block.values or {}).get("G196")
+    if value is None:
+        if "S" not in block.words:
+            raise _fault(turning_faults.LIMIT_MISSING, block, "G196")
+        value = block.words["S"]
+        if with_constant or state.turning.facing >= 0:
+            raise _fault(turning_faults.LIMIT_TOO_LATE, block, "G196", value=number(value))
+        block = block._replace(words={word: each for word, each in block.words.items() if word != "S"})
+    if value <= 0.0:
+        raise _fault(turning_faults.MAX_SPEED, block, "G196", value=number(value))
+    state.turning = state.turning._replace(max_rpm=value)
+    return block
+
+
+def _constant_off(channel: Channel, state: ModalState) -> tuple[Function, ...]:
+    """G97: the spindle keeps its speed, and S is in rpm."""
+    was_on = state.turning.speed > 0.0
+    state.turning = state.turning._replace(facing=-1, speed=0.0)
+    return (CuttingSpeed(current_main(channel, state).key, 0.0),) if was_on else ()
+
+
+def _take_cutting_speed(channel: Channel, state: ModalState, block: NcBlock) -> tuple[NcBlock, tuple[Function, ...]]:
+    """S in m/min (ft/min): the block with the speed for the present position, rpm.
+
+    Raises ProgramError 20642, 120167.
+    """
+    main = current_main(channel, state)
+    _refuse_positioning(channel, block)
+    value, modal = _programmed_speed(channel, block), state.turning
+    told: tuple[Function, ...] = ()
+    if value is not None:
+        if value <= 0.0:
+            raise _fault(turning_faults.CUTTING_SPEED, block, "S", value=number(value))
+        in_feet = channel.turning.feet and state.coordinates.unit != 1.0
+        speed = value * (FEET_PER_MINUTE if in_feet else M_PER_MINUTE)
+        state.turning = modal._replace(speed=speed)
+        told = (CuttingSpeed(main.key, speed, modal.max_rpm, modal.facing),)
+    elif any(code.number == LARGEST for code in block.codes) and modal.speed:
+        told = (CuttingSpeed(main.key, modal.speed, modal.max_rpm, modal.facing),)
+    if state.turning.speed and (value is not None or main.key not in state.spindle.turning):
+        rpm = speed_at(state, main, state.programmed[modal.facing], any_gear=main.automatic)
+        state.speeds[main.key] = rpm
+        if value is not None:
+            block = _with_rpm(channel, block, rpm)
+    return block, told
+
+
+def _refuse_positioning(channel: Channel, block: NcBlock) -> None:
+    name = channel.table.main_name
+    if any(code.number == 19 for code in block.m):
+        raise _fault(turning_faults.POSITIONING, block, "M19", spindle=name)
+    if any(words.positioning and words.name == name for words in block.spindles):
+        raise _fault(turning_faults.POSITIONING, block, name, spindle=name)
+
+
+def _programmed_speed(channel: Channel, block: NcBlock) -> float | None:
+    """Of the main spindle: S100, SPINDLE=100, S[REV100]."""
+    if "S" in block.words:
+        return block.words["S"]
+    own = [words for words in block.spindles if words.name == channel.table.main_name]
+    return next((words.speed_rpm for words in own if words.speed_rpm is not None), None)
+
+
+def _with_rpm(channel: Channel, block: NcBlock, rpm: float) -> NcBlock:
+    if "S" in block.words:
+        return block._replace(words={**block.words, "S": rpm})
+    name = channel.table.main_name
+    changed = [
+        words._replace(speed_rpm=rpm) if words.name == name and words.speed_rpm is not None else words
+        for words in block.spindles
+    ]
+    return block._replace(spindles=tuple(changed))
+
+
+def follow(channel: Channel, state: ModalState, motion: LinearMove | CircularMove) -> None:
+    """The commanded speed at the end of a motion; in rapid traverse it stays."""
+    if not (isinstance(motion, LinearMove) and motion.rapid):
+        main = current_main(channel, state)
+        state.speeds[main.key] = speed_at(state, main, state.programmed[state.turning.facing])
+
+
+def speed_at(state: ModalState, main: Spindle, radius: float, *, any_gear: bool = False) -> float:
+    """The speed, rpm, that has the cutting speed at this radius, in the limits of G196 and of the gear.
+
+    `any_gear`: one is chosen for the speed; else that of the active one counts.
+    """
+    active = state.spindle.gears.get(main.key, main.gear)
+    stages = range(1, len(main.ranges) + 1) if any_gear and main.ranges else (active,)
+    low = min([speed_range(main, stage)[0] for stage in stages])
+    high = max([highest(main, stage) for stage in stages])
+    return max(low, min(state.turning.max_rpm or inf, high, rpm_at(state.turning.speed, radius)))
+
+
+def highest(main: Spindle, stage: int) -> float:
+    """The largest speed of a gear stage, rpm."""
+    limit = main.limits[stage - 1] if stage <= len(main.limits) else inf
+    return min(limit, speed_range(main, stage)[1] or inf)
+
+
+def rpm_at(speed: float, radius: float) -> float:
+    """The speed of a spindle, rpm, for a cutting speed (mm/s) at a radius (mm)."""
+    return speed * 60.0 / (2.0 * pi * max(SMALLEST_RADIUS, abs(radius)))
+
+
+def _fault(fault: faults.Fault, block: NcBlock, place: str, /, **values: Value) -> faults.ProgramError:
+    return fault.at(block.source, block.source.column(place), **values)
