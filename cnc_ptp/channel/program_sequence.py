@@ -245,8 +245,10 @@ class ProgramSequence:
 
     @property
     def cuts(self) -> bool:
-        """The path moves at a feed."""
+        """The path moves at a feed, in no thread."""
         motion = self._block.motion if self._block is not None and self.phase is Phase.MOTION else None
+        if led_by_spindle(motion):
+            return False
         return isinstance(motion, CircularMove) or (isinstance(motion, LinearMove) and not motion.rapid)
 
     def speed_follows(self, spindles: Container[str]) -> None:

@@ -6,11 +6,12 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
-from machine_support import MILL, MachineBench
+from machine_support import MILL, MachineBench, spindle_bench
 from replay_support import bits, replay
 
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
+from cnc_ptp.protocol.blocks import ChannelBlock
 from cnc_ptp.protocol.channel_states import ChannelStateCode as C
 from cnc_ptp.protocol.spindle_states import SpindleBit
 
@@ -193,8 +194,8 @@ def test_acceleration_of_the_spindle_limits_the_path() -> None:
 def test_spindle_that_others_turn_is_refused() -> None:
     bench = run("G00 X20\nG63 Z-4 F250 S200\nM30\n", "- {at: 0.0, to: s, do: start, direction: cw, speed_rpm: 120}")
     assert bench.failed
-    assert [event.text for event in bench.events_of("channel") if event.severity == 2] == [
-        "channel channel: spindle s turns at 120 rpm; it must be at a standstill (M05 or M19 before) in test.nc line 2"
+    assert bench.errors() == [
+        "P-ERR-22060 channel channel: spindle s turns at 120 rpm; it must be at a standstill (M05 or M19 before) in test.nc line 2"
         " 'G63 Z-4 F250 S200'; the path stops on its ramp and the program is aborted"
     ]
 
@@ -218,6 +219,35 @@ def test_commands_to_a_spindle_on_the_path_are_refused(command: str, arguments: 
     bench.run()
     assert bench.position("z") == 5.0
     assert_follows(bench)
+
+
+def test_spindle_that_leaves_the_path_stops_it() -> None:
+    bench = MachineBench(TAP).run(3.0)
+    assert bench.give("s", "leave_path", source="channel").accepted
+    bench.run()
+    assert bench.errors() == [
+        "P-ERR-22061 channel channel: spindle s no longer follows the path in test.nc line 3 'N30 G63 Z-15 F250 S200';"
+        " the path stops on its ramp and the program is aborted"
+    ]
+    assert bench.column("s", "set_speed_rpm")[-1] == 0.0
+    assert_spindle_in_limits(bench)
+
+
+def test_path_without_setpoints_stops_the_spindle_on_its_ramp() -> None:
+    bench = spindle_bench()
+    assert bench.accepted("follow_path", source="channel") == ""
+    bench.run(10, {"channel": ChannelBlock(bench.cycle, 10)})
+    travel = [0.5 * n for n in range(10)]
+    block = ChannelBlock(bench.cycle, 10, path_spindles=["s"], spindle_travel=travel, spindle_speed=[500.0] * 10)
+    block.spindle_acceleration = block.spindle_jerk = [0.0] * 10
+    bench.run(10, {"channel": block})
+    bench.run(10, {"channel": ChannelBlock(bench.cycle, 10)})
+    assert bench.event_texts() == [
+        "P-ERR-24033 spindle s: the path of channel 'channel' no longer gives setpoints; the spindle stops on its ramp"
+        " (ErrorStop)"
+    ]
+    bench.run(1000)
+    assert bench.column("set_speed_rpm")[-1] == 0.0
 
 
 def test_leave_without_a_path() -> None:
