@@ -167,6 +167,13 @@ class SpindleLink(NamedTuple):
     den: float = 1.0
 
 
+class SpindleAxis(NamedTuple):
+    """#CAX: the spindle becomes the last axis of the path where it stands; #CAX OFF: it is a spindle again."""
+
+    spindle: str
+    on: bool
+
+
 class ExplicitSynchronisation(NamedTuple):
     """#EXPL SYN: the path waits for all functions of type MVS_SLP before it."""
 
@@ -253,6 +260,7 @@ Function = (
     | SpindleCommand
     | GearChange
     | SpindleLink
+    | SpindleAxis
     | ExplicitSynchronisation
     | WaitForPath
     | Timer

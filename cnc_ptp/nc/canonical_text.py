@@ -15,6 +15,7 @@ from cnc_ptp.nc.canonical import (
     Message,
     Motion,
     OrderedError,
+    SpindleAxis,
     SpindleCommand,
     SpindleFeedforward,
     SpindleFunction,
@@ -53,6 +54,8 @@ def format_function(function: Function) -> str:
         case SpindleLink(slave, master, on, num, den):
             ratio = "" if num == den else f" {number(num)}/{number(den)}"
             return f"{'link' if on else 'unlink'} {slave}={master}{ratio}"
+        case SpindleAxis(spindle, on):
+            return f"{spindle}[{'axis of the path' if on else 'spindle'}]"
         case ExplicitSynchronisation():
             return "wait for MVS_SLP"
         case WaitForPath():

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 
-from cnc_ptp.nc import tapping
+from cnc_ptp.nc import c_axis, tapping
 from cnc_ptp.nc.arcs import extreme_points
 from cnc_ptp.nc.block_search import BlockSearch
 from cnc_ptp.nc.canonical import (
@@ -15,6 +15,7 @@ from cnc_ptp.nc.canonical import (
     LinearMove,
     Motion,
     Source,
+    SpindleAxis,
     Timer,
     WaitForPath,
 )
@@ -97,13 +98,14 @@ def interpret(
     """
     index = {axis: position for position, axis in enumerate(axes)}
     table, ratio = spindle_table(spindles), centre_offset_ratio
-    words, turns = program.vocabulary, frozenset(rotary)
+    words, turns = program.vocabulary, frozenset(rotary).union([table.c_axis] if table.c_axis else [])
     channel = Channel(
         axes, index, table, centre_offset, ratio, words, turns, offsets, soft_limits, tools, references=references
     )
     state = initial_state(channel) if state is None else state
     state.position = tuple(start)
     state.tool.written = NOT_WRITTEN
+    state.c_axis = ""
     refresh(channel, state)
     state.reported = True
     if words.first_offset and not state.coordinates.own.zero_index:
@@ -142,7 +144,7 @@ def interpret(
                     yield from _followed(channel, state, block, canonical, steps, check_target, execution.calls)
                 elif canonical is not None:
                     yield _reported(channel, state, canonical)
-                    if isinstance(motion, HomeAxes) and values.position:
+                    if (isinstance(motion, HomeAxes) or takes_spindle(canonical)) and values.position:
                         state.position = values.position
                         refresh(channel, state)
                 if isinstance(motion, LinearMove) and motion.measures and values.touch is not None:
@@ -186,7 +188,10 @@ def _resolve(
 ) -> CanonicalBlock | None:
     """One block with the modal state: selects its G codes, builds motion and functions, moves the position."""
     if block.command is not None:
+        taken = state.c_axis
         commanded = block.command.run(channel, state, block, block.command)
+        if taken:
+            c_axis.check_functions(channel, state, block, commanded)
         return CanonicalBlock(block.source, commanded, None, "", calls=calls) if commanded else None
     path: GCode | None = None
     modal = -1
@@ -204,6 +209,8 @@ def _resolve(
         state.path = modal
     if path is None:
         path = channel.vocabulary.paths[state.path]
+    if channel.table.c_axis:
+        c_axis.check_words(channel, state, block, path)
     for code in block.codes:
         if code.prepare is not None:
             code.prepare(channel, state, block, code)
@@ -227,6 +234,8 @@ def _resolve(
         functions = block_functions(channel, state, block)
     if control or block.controls:
         functions += control + bracketed_controls(channel, state, block, functions)
+    if state.c_axis:
+        c_axis.check_functions(channel, state, block, functions)
     if motion is not None:
         motion = _moved(channel, state, block, motion, check_target)
     state.once = None
@@ -249,6 +258,8 @@ def _moved(
     motion = timed(channel, state, place(channel, state, block, motion))
     if isinstance(motion, LinearMove) and motion.measures:
         motion = placed(motion, state.position, block)
+        if state.c_axis:
+            c_axis.check_motion(channel, block, motion)
     elif motion.target == state.position and not isinstance(motion, CircularMove):
         state.programmed = programmed
         return None
@@ -320,7 +331,12 @@ def _with_new_tool(
 
 def awaits_path(block: CanonicalBlock) -> bool:
     """Behind this block the interpreter needs what only the run knows."""
-    return isinstance(block.motion, HomeAxes) or measures(block.motion) or reads_the_run(block)
+    return isinstance(block.motion, HomeAxes) or measures(block.motion) or takes_spindle(block) or reads_the_run(block)
+
+
+def takes_spindle(block: CanonicalBlock) -> bool:
+    """Behind this block a spindle is an axis of the path, which stands where only the run knows."""
+    return any(isinstance(function, SpindleAxis) and function.on for function in block.functions)
 
 
 def reads_the_run(block: CanonicalBlock) -> bool:

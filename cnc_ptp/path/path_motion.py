@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from cnc_ptp.motion import Limits
 from cnc_ptp.motion.limits import check_limits
@@ -25,6 +25,8 @@ Evaluation = Callable[[float, float, float, float], AxisStates]
 SpindleLimits = Callable[[str], AxisLimits]
 """Limits of a spindle as an axis of the path, by its name in programs; deg, s."""
 AT_REST: AxisState = (0.0, 0.0, 0.0, 0.0)
+NO_LIMITS: Final = AxisLimits(1.0, 1.0, 1.0, 1.0)
+"""Of the C axis while the spindle is none: it does not move."""
 PathPoint = tuple[AxisStates, float, float]
 """One cycle on the path: the state of each axis, path velocity (mm/s), distance to the end of the element (mm)."""
 
@@ -67,7 +69,8 @@ class Plan(NamedTuple):
 class PathMotion:
     """Runs the motions of canonical blocks; between them the axes are at rest.
 
-    states           (position, velocity, acceleration, jerk) of each axis in the last cycle that was given out
+    states           (position, velocity, acceleration, jerk) of each axis in the last cycle that was given out; the C
+                     axis is the last one
     velocity         path velocity, mm/s
     distance_to_go   mm to the end of the element
     feed             programmed feed, mm/s; in rapid traverse the velocity that the axes allow
@@ -90,10 +93,15 @@ class PathMotion:
         self._cycle_time = cycle_time
         self._feed_limits = [AxisLimits(a.max_velocity, a.acceleration, a.deceleration, a.jerk) for a in axes]
         self._rapid_limits = [AxisLimits(a.rapid_velocity, a.acceleration, a.deceleration, a.jerk) for a in axes]
+        if channel.c_axis:
+            self._feed_limits.append(NO_LIMITS)
+            self._rapid_limits.append(NO_LIMITS)
         self._path_axes = path_axes(channel)
         self._spindle_limits = spindle_limits
         self.spindle_states: list[AxisState] = []
         self.spindle_state = AT_REST
+        self._spindle_zero: float | None = None
+        """Position of the C axis where the path has taken the spindle over; None while it is none."""
         self._taps = False
         """The spindle is the last coordinate of the active element."""
         self._max_override = channel.max_override_percent / 100.0
@@ -110,7 +118,7 @@ class PathMotion:
         """States of the axes on the active element."""
         self._linked: LinkedPath | None = None
         """The path of several blocks that is active, in place of an element."""
-        self.states = standing([a.start_position for a in axes])
+        self.states = standing([a.start_position for a in axes] + ([0.0] if channel.c_axis else []))
         self.velocity = 0.0
         self.distance_to_go = 0.0
         self.feed = 0.0
@@ -316,7 +324,20 @@ class PathMotion:
 
     def take_spindle(self) -> None:
         """A spindle becomes an axis of the path: its travel counts from here."""
-        self.spindle_state = AT_REST
+        self.spindle_state, self._spindle_zero = AT_REST, None
+
+    def take_c_axis(self, angle: float, limits: AxisLimits) -> None:
+        """The spindle becomes the C axis where it stands (deg), with these limits (deg, s)."""
+        self._spindle_zero = angle
+        self._feed_limits[-1] = self._rapid_limits[-1] = limits
+        self.place(len(self.states) - 1, angle)
+
+    def spindle_travel(self, axes: AxisStates) -> AxisState:
+        """Of the spindle since the path has taken it over, in a cycle in which no tapping moves it."""
+        if self._spindle_zero is None:
+            return self.spindle_state
+        position, velocity, acceleration, jerk = axes[-1]
+        return position - self._spindle_zero, velocity, acceleration, jerk
 
     def follow(self, count: int) -> list[PathPoint]:
         """The next `count` cycles of the active motion; fewer when it ends before."""

@@ -3,7 +3,7 @@
 import pytest
 from nc_support import HERE, files_of, machine, tools, vocabulary_of
 
-from cnc_ptp.nc import faults, spindle_faults
+from cnc_ptp.nc import c_axis_faults, faults, spindle_faults
 from cnc_ptp.nc.canonical_text import format_block
 from cnc_ptp.nc.coordinates import coordinate_faults
 from cnc_ptp.nc.expressions import expression_faults
@@ -26,7 +26,7 @@ def faults_of(part) -> list[Fault]:
     return values + [fault for table in tables for fault in table.values() if isinstance(fault, Fault)]
 
 
-PARTS = (iso_faults, faults, spindle_faults, expression_faults, flow_faults, coordinate_faults, tool_faults)
+PARTS = (iso_faults, faults, spindle_faults, c_axis_faults, expression_faults, flow_faults, coordinate_faults, tool_faults)
 FAULTS = [fault for part in PARTS for fault in faults_of(part)]
 
 

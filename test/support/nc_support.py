@@ -56,6 +56,7 @@ TABLES = {
     "plc": three_spindles(plc_control=True)._replace(gear_change=True),
     "limited": limited_spindles(),
     "unpositioned": three_spindles(positioned=False),
+    "c_axis": three_spindles()._replace(c_axis="C"),
     "linked": three_spindles()._replace(default_link=(Pair("S2", "S"),)),
     "wrongly_linked": three_spindles()._replace(default_link=(Pair("S", "S2"),)),
 }

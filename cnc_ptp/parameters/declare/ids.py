@@ -201,6 +201,7 @@ CONTOUR_TRACK_DEV = "P-CHAN-90013"  # prog_start.contour.track_dev
 HSC_PATH_DEV = "P-CHAN-90014"  # prog_start.hsc.path_dev
 HSC_TRACK_DEV = "P-CHAN-90015"  # prog_start.hsc.track_dev
 TAPPING_PITCH_TOLERANCE = "P-CHAN-90020"  # tapping.pitch_tolerance
+C_AXIS_RAMP_TIME = "P-CHAN-90045"  # c_axis.ramp_time
 
 # startup list
 WERKZ_DATA = "P-STUP-00010"  # werkz_data

@@ -122,6 +122,17 @@ class ChannelParameters:
     """A measuring run without a signal of the probe is an error."""
     pitch_tolerance: float = 0.001
     """Ratio by which F / S of G63 may differ from a programmed pitch (P-CHAN-90020)."""
+    c_axis: str = ""
+    """Program name of the main spindle as an axis of the path; empty: it does not become one (P-CHAN-00010)."""
+    face_kind: Annotated[int, ids.CAX_FACE_ID] = 0
+    """Kind of machine for #FACE: 2, X may pass the centre of rotation."""
+    c_axis_ramp: Annotated[float, ids.C_AXIS_RAMP_TIME] = 0.02
+    """s in which the spindle builds up its acceleration as an axis of the path."""
+
+    @property
+    def path_axes(self) -> tuple[str, ...]:
+        """Names of the axes of the path: those of the channel, then the C axis."""
+        return (*[axis.name for axis in self.axes], *([self.c_axis] if self.c_axis else []))
 
 
 def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet], folder: Path) -> ChannelParameters:
@@ -129,6 +140,7 @@ def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet], folder
     spindles = spindle_entries(channel, sets)
     axes = axis_entries(channel, sets)
     main = main_spindle_number(channel, spindles)
+    c_axis = channel.text(ids.DEFAULT_AX_NAME_OF_SPINDLE) if spindles else ""
     return ChannelParameters(
         name=channel.node,
         axes=tuple(ChannelAxis(entry.name, str(entry.node)) for entry in axes),
@@ -142,8 +154,9 @@ def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet], folder
         dialect=channel.text(ids.INTERPRETER_DIALECT),
         tool_table=tool_table(channel, sets),
         slope={0: "STEP", 2: "SIN2"}.get(int(channel.number(ids.SLOPE_PROFILE)), "TRAPEZ"),
-        offsets=offset_tables(channel, len(axes)),
+        offsets=offset_tables(channel, len(axes) + bool(c_axis)),
         cycles=cycles(channel),
+        c_axis=c_axis,
         pitch_tolerance=channel.number(ids.TAPPING_PITCH_TOLERANCE) / 1000.0,
         folders=tuple(str(folder / name) for name in channel.names(ids.INTERPRETER_FOLDERS)),
         **given_fields(ChannelParameters, channel),
