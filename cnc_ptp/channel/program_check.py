@@ -482,7 +482,7 @@ def spindle_table(channel: ChannelParameters, spindles: Mapping[str, SpindlePara
     coupled = tuple(Pair(slave, master) for slave, master in channel.coupled)
     main = channel.main_spindle or "S"
     return SpindleTable(
-        table, main, channel.gear_change, coupled, groups, channel.pitch_tolerance, channel.c_axis
+        table, main, channel.gear_change, coupled, groups, channel.pitch_tolerance, channel.c_axis, channel.face_kind
     )
 
 

@@ -25,6 +25,10 @@ from cnc_ptp.nc.spindles import current_main, names
 
 CAX: Final = "[S, C], or #CAX, #CAX OFF"
 HOMING: Final = 74
+AXIS_CODES: Final = (HOMING, 100, 31, 28)
+"""Path functions that move axes as such: homing, measuring, reference points."""
+TOOL_WORDS: Final = ("D", "T")
+"""Their offsets are in axes."""
 
 
 def begin(channel: Channel, state: ModalState, block: NcBlock, command: HashCommand) -> tuple[Function, ...]:
@@ -78,6 +82,9 @@ def end(channel: Channel, state: ModalState, block: NcBlock, command: HashComman
         raise spindle_faults.COMMAND_ARGUMENTS.at(block.source, command.column, command="#CAX", syntax=CAX)
     if not state.c_axis:
         raise own.C_AXIS_NOT_ON.at(block.source, command.column)
+    kinematics = state.coordinates.kinematics
+    if kinematics is not None:
+        raise own.NOT_WITH_KINEMATICS.at(block.source, command.column, word="#CAX OFF", command=kinematics.name)
     spindle, state.c_axis = state.c_axis, ""
     return (SpindleAxis(spindle, False),)
 
@@ -92,6 +99,11 @@ def check_words(channel: Channel, state: ModalState, block: NcBlock, path: GCode
             raise own.C_AXIS_OFF.at(block.source, column(axis), axis=axis)
     if state.c_axis and path.number in tapping.CODES:
         raise _taken(channel, state, block, path.name)
+    kinematics = state.coordinates.kinematics
+    if kinematics is not None:
+        word = path.name if path.number in AXIS_CODES else next((w for w in TOOL_WORDS if w in block.words), "")
+        if word:
+            raise own.NOT_WITH_KINEMATICS.at(block.source, column(word), word=word, command=kinematics.name)
 
 
 def check_functions(channel: Channel, state: ModalState, block: NcBlock, functions: tuple[Function, ...]) -> None:

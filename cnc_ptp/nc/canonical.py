@@ -13,6 +13,7 @@ functions have finished.
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
+from cnc_ptp.kinematics.kinematics import Kinematics
 from cnc_ptp.nc.contour import THROUGH, Transition
 
 
@@ -65,7 +66,7 @@ class LinearMove(NamedTuple):
 
     `slope` of its acceleration, "" is that of P-CHAN-00071; `full_override`: G166, the override has no effect;
     `transition` to the next motion; `measures`: places of the axes of a measuring run, which the signal of the probe
-    ends; `tap`: the spindle that turns with it.
+    ends; `tap`: the spindle that turns with it; `kinematics`: the target is Cartesian, this makes machine positions of it.
     """
 
     target: tuple[float, ...]
@@ -76,6 +77,7 @@ class LinearMove(NamedTuple):
     transition: Transition = THROUGH
     measures: tuple[int, ...] = ()
     tap: Tap | None = None
+    kinematics: Kinematics | None = None
 
 
 Direction = tuple[float, ...]
@@ -87,7 +89,7 @@ class CircularMove(NamedTuple):
 
     `plane` holds the axis indices (first, second), `center` is absolute in that plane (mm), `radius` in mm,
     `sweep` in degrees, positive from the first towards the second axis (G03), 0 < |sweep| <= 360; `feed` in mm/s;
-    `slope`, `full_override` and `transition` as in LinearMove.
+    `slope`, `full_override`, `transition` and `kinematics` as in LinearMove.
     `directions`: in a coordinate system that is tilted, where the two axes of the plane point in the machine; `center`
     is then along them. They are at right angles to each other and to the linear motion of X, Y and Z.
     """
@@ -102,6 +104,7 @@ class CircularMove(NamedTuple):
     full_override: bool = False
     transition: Transition = THROUGH
     directions: tuple[Direction, Direction] | None = None
+    kinematics: Kinematics | None = None
 
     def turns(self, axis: int) -> bool:
         """Whether the axis with this index takes part in the circle."""
@@ -172,6 +175,12 @@ class SpindleAxis(NamedTuple):
 
     spindle: str
     on: bool
+
+
+class KinematicsChange(NamedTuple):
+    """#FACE, #CYL: positions behind it are those of the kinematics; None: of the axes again. The path stands."""
+
+    kinematics: Kinematics | None
 
 
 class ExplicitSynchronisation(NamedTuple):
@@ -261,6 +270,7 @@ Function = (
     | GearChange
     | SpindleLink
     | SpindleAxis
+    | KinematicsChange
     | ExplicitSynchronisation
     | WaitForPath
     | Timer
@@ -277,7 +287,8 @@ class OffsetReport(NamedTuple):
 
     machine = shift + matrix · programmed for X, Y, Z (matrix row by row), shift + programmed for the other axes.
     `zero_index`: 0 is G53, 1 G54; `scale` of #SCALE, `mirrored` by G21 to G23, `angle` of #ROTATION or None;
-    `systems`: #ACS and #CS that are on, the outermost first; `machine`: #MCS is on.
+    `systems`: #ACS and #CS that are on, the outermost first; `machine`: #MCS is on. `kinematics`: what follows behind
+    these offsets (#FACE, #CYL).
     """
 
     zero_index: int
@@ -294,6 +305,7 @@ class OffsetReport(NamedTuple):
     machine: bool
     matrix: tuple[float, ...]
     shift: tuple[float, ...]
+    kinematics: Kinematics | None = None
 
 
 class CanonicalBlock(NamedTuple):

@@ -11,6 +11,7 @@ from cnc_ptp.nc.canonical import (
     Function,
     GearChange,
     HomeAxes,
+    KinematicsChange,
     LinearMove,
     Message,
     Motion,
@@ -56,6 +57,8 @@ def format_function(function: Function) -> str:
             return f"{'link' if on else 'unlink'} {slave}={master}{ratio}"
         case SpindleAxis(spindle, on):
             return f"{spindle}[{'axis of the path' if on else 'spindle'}]"
+        case KinematicsChange(kinematics):
+            return "positions of the axes" if kinematics is None else f"positions of {kinematics.name}"
         case ExplicitSynchronisation():
             return "wait for MVS_SLP"
         case WaitForPath():
@@ -102,6 +105,7 @@ def _motion(motion: Motion) -> str:
     target, slope = _numbers(motion.target), f" slope {motion.slope}" if motion.slope else ""
     slope += " G166" if motion.full_override else ""
     slope += _transition(motion.transition)
+    slope += "" if motion.kinematics is None else f" {motion.kinematics.name}"
     if isinstance(motion, LinearMove):
         kind = "measure" if motion.measures else "line"
         if motion.tap is not None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 
-from cnc_ptp.nc import c_axis, tapping
+from cnc_ptp.nc import c_axis, tapping, transformations
 from cnc_ptp.nc.arcs import extreme_points
 from cnc_ptp.nc.block_search import BlockSearch
 from cnc_ptp.nc.canonical import (
@@ -12,6 +12,7 @@ from cnc_ptp.nc.canonical import (
     CircularMove,
     Function,
     HomeAxes,
+    KinematicsChange,
     LinearMove,
     Motion,
     Source,
@@ -22,7 +23,7 @@ from cnc_ptp.nc.canonical import (
 from cnc_ptp.nc.contour import THROUGH
 from cnc_ptp.nc.controls import bracketed_controls
 from cnc_ptp.nc.coordinates.codes import initial_state, select_offset
-from cnc_ptp.nc.coordinates.limits import check_limits
+from cnc_ptp.nc.coordinates.limits import check_limits, require_within
 from cnc_ptp.nc.coordinates.placement import leave_frame, place, refresh
 from cnc_ptp.nc.coordinates.report import offset_report
 from cnc_ptp.nc.expressions import expression_faults
@@ -106,6 +107,7 @@ def interpret(
     state.position = tuple(start)
     state.tool.written = NOT_WRITTEN
     state.c_axis = ""
+    transformations.restore(state)
     refresh(channel, state)
     state.reported = True
     if words.first_offset and not state.coordinates.own.zero_index:
@@ -144,14 +146,14 @@ def interpret(
                     yield from _followed(channel, state, block, canonical, steps, check_target, execution.calls)
                 elif canonical is not None:
                     yield _reported(channel, state, canonical)
-                    if (isinstance(motion, HomeAxes) or takes_spindle(canonical)) and values.position:
-                        state.position = values.position
-                        refresh(channel, state)
+                    if (isinstance(motion, HomeAxes) or changes_axes(canonical)) and values.position:
+                        transformations.place(channel, state, values.position)
                 if isinstance(motion, LinearMove) and motion.measures and values.touch is not None:
                     _take_measured(channel, values, motion, values.touch)
                 before = None
             if not state.reported:
                 yield _with_offsets(channel, state, CanonicalBlock(source, (), None, ""))
+            transformations.restore(state)
             goes_on = False
         except ProgramError as error:
             error = with_calls(error, execution)
@@ -263,9 +265,13 @@ def _moved(
     elif motion.target == state.position and not isinstance(motion, CircularMove):
         state.programmed = programmed
         return None
-    if check_target is not None:
+    kinematics = state.coordinates.kinematics
+    if kinematics is not None:
+        motion = motion._replace(kinematics=kinematics)
+        _check_transformed(channel, state, block, motion, check_target)
+    elif check_target is not None:
         _check_move(state.position, motion, block.source, check_target)
-    if state.coordinates.limits:
+    if state.coordinates.limits and kinematics is None:
         check_limits(channel, state, block, motion)
     if state.slope:
         motion = motion._replace(slope=state.slope)
@@ -278,6 +284,22 @@ def _moved(
         _require_speed(state, motion)
     state.position, state.programmed = motion.target, programmed
     return motion
+
+
+def _check_transformed(
+    channel: Channel,
+    state: ModalState,
+    block: NcBlock,
+    motion: LinearMove | CircularMove,
+    check_target: CheckTarget | None,
+) -> None:
+    """The same for Cartesian targets: soft limits are those of the axes."""
+    points = transformations.check_move(channel, state, block, motion)
+    for point in points if check_target is not None else ():
+        assert check_target is not None
+        check_target(point, block.source)
+    if state.coordinates.limits:
+        require_within(channel, state, points[1:], range(len(channel.axes)), block.source)
 
 
 def ends_on_its_own(motion: Motion) -> bool:
@@ -331,12 +353,12 @@ def _with_new_tool(
 
 def awaits_path(block: CanonicalBlock) -> bool:
     """Behind this block the interpreter needs what only the run knows."""
-    return isinstance(block.motion, HomeAxes) or measures(block.motion) or takes_spindle(block) or reads_the_run(block)
+    return isinstance(block.motion, HomeAxes) or measures(block.motion) or changes_axes(block) or reads_the_run(block)
 
 
-def takes_spindle(block: CanonicalBlock) -> bool:
-    """Behind this block a spindle is an axis of the path, which stands where only the run knows."""
-    return any(isinstance(function, SpindleAxis) and function.on for function in block.functions)
+def changes_axes(block: CanonicalBlock) -> bool:
+    """Behind this block the path has other axes (#CAX, #FACE), which stand where only the run knows."""
+    return any(isinstance(function, (SpindleAxis, KinematicsChange)) for function in block.functions)
 
 
 def reads_the_run(block: CanonicalBlock) -> bool:

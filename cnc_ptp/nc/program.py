@@ -196,7 +196,8 @@ class SpindleTable(NamedTuple):
     `main_name`: what programs call whichever spindle is the main one (P-CHAN-00053). `gear_change`: M40 to M45 change
     its gear (P-CHAN-00052). `default_link`: coupling group 0 (P-CHAN-00037, 00038); `link_groups`: number of groups.
     `pitch_tolerance`: ratio by which F / S of G63 may differ from a programmed pitch (P-CHAN-90020).
-    `c_axis`: name of the main spindle as the last axis of the path, "" if it does not become one (P-CHAN-00010).
+    `c_axis`: name of the main spindle as the last axis of the path, "" if it does not become one (P-CHAN-00010);
+    `face_kind`: kind of machine for #FACE (P-CHAN-00008).
     """
 
     spindles: tuple[Spindle, ...]
@@ -206,6 +207,7 @@ class SpindleTable(NamedTuple):
     link_groups: int = 4
     pitch_tolerance: float = 0.001
     c_axis: str = ""
+    face_kind: int = 0
 
 
 class NcBlock(NamedTuple):

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple
 
+from cnc_ptp.kinematics.kinematics import Kinematics
 from cnc_ptp.motion import Limits
 from cnc_ptp.motion.limits import check_limits
 from cnc_ptp.nc.canonical import STEP, Dwell, LinearMove
@@ -15,8 +16,10 @@ from cnc_ptp.path.interpolator import PathInterpolator
 from cnc_ptp.path.linked_path import LinkedPath, MotionSource, Path, is_rapid, taps
 from cnc_ptp.path.lookahead.look_ahead import LookAhead
 from cnc_ptp.path.lookahead.path_builder import LinkedMotion, PathBuilder
+from cnc_ptp.path.lookahead.spans import whole
 from cnc_ptp.path.planner import PLANNERS, Planner
 from cnc_ptp.path.shape import AxisState, without_jerk
+from cnc_ptp.path.transformed_span import divided, require_possible
 
 CARTESIAN = ("X", "Y", "Z")
 AxisStates = tuple[AxisState, ...]
@@ -251,10 +254,14 @@ class PathMotion:
             self._interpolator.dwell(motion.seconds)
             self._dwell = motion.seconds
             return
-        plan = self.plan(motion, self.position)
+        kinematics = motion.kinematics
+        start = self.position if kinematics is None else kinematics.forward(self.position)
+        plan = self.plan(motion, start)
+        if kinematics is not None:
+            require_possible(whole(plan.element, 0), kinematics, self.position)
         element, feed = plan.element, plan.feed
         self._set_full_override(motion.full_override)
-        if source is not None and self._link(plan, motion, source):
+        if (source is not None or kinematics is not None) and self._link(plan, motion, source):
             return
         self._taps = taps(motion)
         self._interpolator.start(element, plan.limits, feed, planner=plan.planner)
@@ -267,6 +274,8 @@ class PathMotion:
         They are planned in cells of at most `cell_time` s. Raises as `start`.
         """
         plan = self.plan(motion, start)
+        if motion.kinematics is not None:
+            return [plan.duration]
         path = self._linked_path(plan, motion, source, LookAhead(1.0, 0.0, cell_time))
         return [plan.duration] if path is None else path.durations()
 
@@ -274,6 +283,8 @@ class PathMotion:
         """How a motion from `start` is run on its own. Raises as `start`."""
         element, rapid, slope = self._make_element(start, motion), is_rapid(motion), motion.slope or self._default_slope
         axis_limits = self._rapid_limits if rapid else self._feed_limits
+        if motion.kinematics is not None:
+            axis_limits = programmed_limits(axis_limits, motion.kinematics)
         if isinstance(motion, LinearMove) and motion.tap is not None and self._spindle_limits is not None:
             axis_limits = [*axis_limits, self._spindle_limits(motion.tap.spindle)]
         if slope == STEP:
@@ -284,17 +295,21 @@ class PathMotion:
 
     def _make_element(self, start: tuple[float, ...], motion: Path) -> Line | Arc:
         if isinstance(motion, LinearMove):
-            line = Line(start, motion.target, self._path_axes)
+            line = Line(start, motion.target, self._feed_axes(motion))
             if motion.tap is None:
                 return line
             angle = self.spindle_state[0]
             travel = motion.tap.degrees_per_mm * line.length
             return Line((*start, angle), (*motion.target, angle + travel), self._path_axes)
         turn = (motion.center, motion.plane, motion.radius, motion.sweep)
-        return Arc(start, motion.target, *turn, self._path_axes, motion.directions)
+        return Arc(start, motion.target, *turn, self._feed_axes(motion), motion.directions)
 
-    def _link(self, plan: Plan, motion: Path, source: MotionSource) -> bool:
-        """Starts a path of several blocks if the next motion can be linked to this one."""
+    def _feed_axes(self, motion: Path) -> frozenset[int]:
+        """Those whose path the feed is for."""
+        return self._path_axes if motion.kinematics is None else self._path_axes.union(motion.kinematics.plane)
+
+    def _link(self, plan: Plan, motion: Path, source: MotionSource | None) -> bool:
+        """Starts a path of several blocks if the next motion can be linked to this one, and any with kinematics."""
         ahead = LookAhead(self._interpolator.override, self._interpolator.next_offset)
         path = self._linked_path(plan, motion, source, ahead)
         if path is None:
@@ -302,16 +317,21 @@ class PathMotion:
         self._linked, self.feed = path, path.feed
         return True
 
-    def _linked_path(self, plan: Plan, motion: Path, source: MotionSource, ahead: LookAhead) -> LinkedPath | None:
-        following = None if motion.transition.stops else source.peek()
-        if following is None:
+    def _linked_path(
+        self, plan: Plan, motion: Path, source: MotionSource | None, ahead: LookAhead
+    ) -> LinkedPath | None:
+        following = None if motion.transition.stops or source is None else source.peek()
+        if following is None and motion.kinematics is None:
             return None
-        builder = PathBuilder(sorted(self._path_axes), self._cycle_time)
-        path = LinkedPath(ahead, builder, source, self._make_linked, steps=plan.steps)
-        return path if path.begin(self._linked_motion(plan, motion, 0), motion, following) else None
+        begin = plan.element.start if motion.kinematics is None else self.position
+        builder = PathBuilder(sorted(self._feed_axes(motion)), self._cycle_time, begin)
+        path = LinkedPath(ahead, builder, source or NOTHING_FOLLOWS, self._make_linked, steps=plan.steps)
+        return path if path.begin(self._linked_motion(plan, motion, 0), motion, following, begin) else None
 
     def _make_linked(self, start: tuple[float, ...], motion: Path, block: int) -> LinkedMotion:
         plan = self.plan(motion, start)
+        if motion.kinematics is not None:
+            divided(whole(plan.element, block), motion.kinematics, motion.kinematics.inverse(start, self.position))
         return self._linked_motion(plan, motion, block)
 
     def _linked_motion(self, plan: Plan, motion: Path, block: int) -> LinkedMotion:
@@ -320,7 +340,7 @@ class PathMotion:
         if plan.steps:
             limits = [stepping(axis, self._cycle_time) for axis in limits]
         feed = math.inf if rapid else motion.feed
-        return LinkedMotion(plan.element, limits, feed, block, motion.transition, plan.feed)
+        return LinkedMotion(plan.element, limits, feed, block, motion.transition, plan.feed, motion.kinematics)
 
     def take_spindle(self) -> None:
         """A spindle becomes an axis of the path: its travel counts from here."""
@@ -413,6 +433,29 @@ class PathMotion:
         override = self._interpolator.override
         self._interpolator = PathInterpolator()
         self._interpolator.set_override(override)
+
+
+def programmed_limits(axes: Sequence[AxisLimits], kinematics: Kinematics) -> list[AxisLimits]:
+    """What the programmed axes can do, roughly: for estimates, and for the feed that is shown in rapid traverse."""
+    limits = list(axes)
+    like, length = kinematics.likeness
+    limits[kinematics.plane[1]] = AxisLimits(*[value * length for value in axes[like]])
+    return limits
+
+
+class NoMotions:
+    """A MotionSource without any."""
+
+    busy = False
+
+    def peek(self) -> Path | None:
+        return None
+
+    def accept(self) -> None:
+        raise AssertionError("there is none")
+
+
+NOTHING_FOLLOWS: Final = NoMotions()
 
 
 def evaluation(element: Line | Arc, *, steps: bool) -> Evaluation:

@@ -32,4 +32,5 @@ def offset_report(channel: Channel, coordinates: Coordinates) -> OffsetReport:
         machine=coordinates.outside is not None,
         matrix=(*linear[0], *linear[1], *linear[2]),
         shift=zeros if frame is None else frame.shift,
+        kinematics=coordinates.kinematics,
     )

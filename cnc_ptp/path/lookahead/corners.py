@@ -78,14 +78,17 @@ def corner(a: Span, b: Span, contour: Contour, path_axes: Sequence[int]) -> Corn
     return first, [whole(piece, b.block if index else a.block) for index, piece in enumerate(pieces)], last
 
 
-def kink_square(a: Span, b: Span, limits: Sequence[AxisLimits], cycle_time: float) -> float:
-    """Largest y = u'² at which the corner from A to B can be passed as it is; inf where nothing jumps.
+def kink_square(
+    end: Sequence[Shape], start: Sequence[Shape], limits: Sequence[AxisLimits], cycle_time: float
+) -> float:
+    """Largest y = u'² at which the corner from A, with its `end`, to the `start` of B can be passed as it is.
+
+    inf where nothing jumps.
 
     A jump of the velocity of an axis within one cycle T takes the jerk Δv/T² and the acceleration Δv/T, one of its
     acceleration the jerk Δa/T. Together they may take half the jerk of the axis: |Δq1|·u' <= J·T²/2 or
     |Δq2|·u'² <= J·T/2; and half its acceleration: |Δq1|·u' <= A·T/2. `quiet_limits` leaves that free beside the kink.
     """
-    end, start = a.shape(a.length), b.shape(0.0)
     square = inf
     for kink, bend, axis in zip(direction_jumps(end, start), curvature_jumps(end, start), limits, strict=True):
         share = 0.5 * KINK_SHARE if kink and bend else KINK_SHARE
