@@ -1,7 +1,7 @@
 """The spindle that is an axis of the path for a while (TF5200 spindle 2.3.3, 2.8.6, 2.8.8).
 
-`ready` (G63) and `ready_as_axis` (#CAX) ask for it and are true when the spindle has reported that it follows: from that
-block on the channel gives it setpoints, in every cycle, until `release`.
+`ready` (G63) and `ready_as_axis` (#CAX) ask for it and are true when the spindle has reported that it follows: from
+that block on the channel gives it setpoints, in every cycle, until `release`.
 """
 
 from __future__ import annotations
@@ -104,7 +104,8 @@ class PathSpindle:
             return True
         if not spindle.unit.automatic_homing:
             how = "does not home automatically (P-AXIS-00015 0x100)"
-            reason = f"spindle {spindle.node} has no reference point and {how}; home it before #CAX (G74 {spindle.name}1)"
+            then = f"home it before #CAX (G74 {spindle.name}1)"
+            reason = f"spindle {spindle.node} has no reference point and {how}; {then}"
             raise CncError(SPINDLE_NOT_REFERENCED, reason)
         self._commands += self._spindles.plain(SpindleCommand(spindle.name, "home"))
         return False

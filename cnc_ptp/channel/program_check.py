@@ -429,8 +429,8 @@ class ProgramCheck:
                 raise ProgramError(NOT_REFERENCED, text, source, source.column(name))
 
     def check_target(self, target: tuple[float, ...], source: Source, unlimited: Collection[str] = ()) -> None:
-        """Raises ProgramError 120002 / 120003 for a point (mm) beyond a soft limit; `unlimited` axes have none, nor has C."""
-        for name, axis, position in zip(self._own_names, self._axes, target, strict=False):
+        """Raises ProgramError 120002 / 120003 for a point (mm) beyond a soft limit; `unlimited` axes have none."""
+        for name, axis, position in zip(self._own_names, self._axes, target, strict=False):  # C has none
             unit = "deg" if axis.rotary else "mm"
             if axis.soft_limit_negative <= position <= axis.soft_limit_positive or name in unlimited:
                 continue

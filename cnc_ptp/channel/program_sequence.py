@@ -663,7 +663,8 @@ def leaves_spindle(block: CanonicalBlock, *, is_axis: bool) -> bool:
     motion = block.motion
     if isinstance(motion, (LinearMove, CircularMove, HomeAxes)):
         return not (isinstance(motion, LinearMove) and motion.tap is not None)
-    return any(isinstance(function, (SpindleFunction, SpindleCommand, SpindleLink, SpindleAxis)) for function in block.functions)
+    moves_spindles = (SpindleFunction, SpindleCommand, SpindleLink, SpindleAxis)
+    return any(isinstance(function, moves_spindles) for function in block.functions)
 
 
 def actual_positions(feedback: Mapping[str, CycleBlock], axes: Sequence[str]) -> tuple[float, ...]:

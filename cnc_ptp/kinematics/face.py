@@ -1,7 +1,7 @@
 """Face machining with a C axis: #FACE [X, C] (TF5200 spindle 2.8.8, P-CHAN-00008).
 
-Words of X and C are Cartesian x and y on the face. With z = x + i·y the radius is |z| and the angle that of z. Both come
-from w = ln z: its real part is ln r, its imaginary part the angle in rad, and along a path
+Words of X and C are Cartesian x and y on the face. With z = x + i·y the radius is |z| and the angle that of z. Both
+come from w = ln z: its real part is ln r, its imaginary part the angle in rad, and along a path
 
     w' = z'/z      w'' = z''/z - w'²      w''' = z'''/z - 3·w'·w'' - w'³
 

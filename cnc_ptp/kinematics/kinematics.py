@@ -31,6 +31,10 @@ class Kinematics(Protocol):
     def likeness(self) -> tuple[int, float]:
         """For estimates: the axis whose limits the second axis of the plane has, and mm in one unit of that axis."""
 
+    @property
+    def origin(self) -> Point:
+        """Machine position of the programmed zero point."""
+
     def forward(self, machine: Point) -> Point:
         """The programmed point of a machine position."""
 

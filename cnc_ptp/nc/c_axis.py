@@ -1,7 +1,7 @@
 """The main spindle as an axis of the path: #CAX [S, C], #CAX, #CAX OFF (TF5200 spindle 2.3.3, 2.8.8).
 
-Its name is that of P-CHAN-00010, its place is behind the axes of the channel. Where it stands is known when the path has
-taken it over, so the interpreter waits for that.
+Its name is that of P-CHAN-00010, its place is behind the axes of the channel. Where it stands is known when the path
+has taken it over, so the interpreter waits for that.
 """
 
 from __future__ import annotations

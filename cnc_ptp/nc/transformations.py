@@ -1,8 +1,8 @@
 """Kinematics in programs: #FACE [X, C], #CYL [Z, C, X60] and their OFF (TF5200 spindle 2.8.8).
 
 The offsets that are on when a kinematics begins place it: the tool, a zero offset of C in degrees. What is programmed
-behind it is Cartesian. The machine position at its begin and end is known when the path stands there, so the interpreter
-waits for that.
+behind it is Cartesian. The machine position at its begin and end is known when the path stands there, so the
+interpreter waits for that.
 """
 
 from __future__ import annotations
@@ -22,7 +22,6 @@ from cnc_ptp.nc.canonical import CircularMove, Function, KinematicsChange, Linea
 from cnc_ptp.nc.coordinates.coordinates import Coordinates
 from cnc_ptp.nc.coordinates.placement import refresh
 from cnc_ptp.nc.program import Channel, HashCommand, ModalState, NcBlock
-from cnc_ptp.nc.spindle_faults import COMMAND_ARGUMENTS
 
 FACE: Final = "#FACE [X, C], with the facing axis and the C axis, or #FACE OFF"
 CYLINDER: Final = "#CYL [Z, C, X60], with the axis along the cylinder, the C axis and the radius, or #CYL OFF"
@@ -74,7 +73,7 @@ def off(channel: Channel, state: ModalState, block: NcBlock, command: HashComman
 
 
 def leave(channel: Channel, state: ModalState) -> None:
-    """The coordinates from before the kinematics; where the axes stand is only near, as long as the run does not say."""
+    """The coordinates from before the kinematics; where the axes stand is only near until the run says it."""
     state.position = state_machine(state)
     restore(state)
     refresh(channel, state)
@@ -106,7 +105,7 @@ def state_machine(state: ModalState) -> Point:
 def check_move(
     channel: Channel, state: ModalState, block: NcBlock, motion: LinearMove | CircularMove
 ) -> Sequence[Point]:
-    """Machine positions between which the axes move. Raises ProgramError 21755 for a way through the centre of a face."""
+    """Machine positions between which the axes move. Raises ProgramError 21755 for a way through the centre."""
     kinematics = state.coordinates.kinematics
     assert kinematics is not None
     points = [state.position, motion.target, *centre_points(kinematics, state.position, motion)]
