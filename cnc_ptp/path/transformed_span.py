@@ -78,7 +78,7 @@ def divided(span: Span, kinematics: Kinematics, near: Point) -> tuple[list[Trans
         if not kinematics.fits(middle, span.bounds(begin, end), half):
             if half < SHORTEST:
                 reason = f"the path of {kinematics.name} comes to the centre of rotation, where the C axis has no angle"
-                raise CncError(NO_POSITION, reason, "the motion is refused")
+                raise CncError(NO_POSITION, reason)
             waiting += [(begin + half, end), (begin, begin + half)]
             continue
         near = positions(kinematics.shape(middle, near))
@@ -97,13 +97,13 @@ def require_possible(span: Span, kinematics: Kinematics, start: Point) -> None:
         reason = (
             f"the path of {kinematics.name} goes through the centre of rotation, which X must not pass (P-CHAN-00008)"
         )
-        raise CncError(NO_POSITION, reason, "the motion is refused")
+        raise CncError(NO_POSITION, reason)
     begin = positions(kinematics.shape(span.shape(0.0), start))
     reached = kinematics.forward(end)
     wrong = [abs(a - b) for a, b in zip((*begin, *reached), (*start, *positions(span.shape(span.length))), strict=True)]
     if max(wrong) > SAME_POSITION:
         reason = f"the path of {kinematics.name} leaves the centre of rotation at an angle at which the C axis is not"
-        raise CncError(ANGLE_AT_CENTRE, reason, "the motion is refused")
+        raise CncError(ANGLE_AT_CENTRE, reason)
 
 
 def positions(shape: Sequence[Shape]) -> Point:
