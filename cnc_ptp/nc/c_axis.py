@@ -9,8 +9,9 @@ from __future__ import annotations
 from typing import Final
 
 from cnc_ptp.nc import c_axis_faults as own
-from cnc_ptp.nc import faults, spindle_faults, tapping
+from cnc_ptp.nc import faults, feedforward, spindle_faults, tapping
 from cnc_ptp.nc.canonical import (
+    CompensationSwitch,
     Function,
     GearChange,
     LinearMove,
@@ -97,6 +98,10 @@ def check_words(channel: Channel, state: ModalState, block: NcBlock, path: GCode
             raise own.C_AXIS_HOMING.at(block.source, column(axis), axis=axis, spindle=channel.table.main_name)
         if not state.c_axis:
             raise own.C_AXIS_OFF.at(block.source, column(axis), axis=axis)
+    controlled = any(code.number == feedforward.WEIGHTS for code in block.codes) and axis in block.words
+    if controlled or any(isinstance(each, CompensationSwitch) and each.axis == axis for each in block.controls):
+        spindle = channel.table.main_name
+        raise own.C_AXIS_CONTROL.at(block.source, column(axis), axis=axis, spindle=spindle)
     if state.c_axis and path.number in tapping.CODES:
         raise _taken(channel, state, block, path.name)
     kinematics = state.coordinates.kinematics

@@ -17,6 +17,9 @@ C_AXIS_TURNS = Fault(
 )
 C_AXIS_COUPLED = Fault(21747, "#CAX while spindle {spindle} is coupled (group {group}); #AX LINK OFF first")
 C_AXIS_HOMING = Fault(21748, "G74 of axis {axis}: it is homed as a spindle, G74 {spindle}1 before #CAX")
+C_AXIS_CONTROL = Fault(
+    21759, "feedforward and compensation of axis {axis}: its controller is that of spindle {spindle}"
+)
 C_AXIS_MEASURES = Fault(21749, "a measuring run with axis {axis}: a spindle has no probe")
 
 # Kinematics

@@ -42,7 +42,7 @@ def target_of(channel: Channel, state: ModalState, block: NcBlock, code: GCode) 
         if index is not None:
             if target is None:
                 target = list(position)
-            if unit != 1.0 and word not in channel.rotary:
+            if unit != 1.0 and is_length(channel, state, word):
                 value *= unit
             target[index] = value if state.absolute else position[index] + value
         elif word == "F":
@@ -54,6 +54,11 @@ def target_of(channel: Channel, state: ModalState, block: NcBlock, code: GCode) 
                 continue
             raise _unused(channel, block, code, word)
     return target
+
+
+def is_length(channel: Channel, state: ModalState, axis: str) -> bool:
+    """Its words are lengths: it is linear, or the C axis behind a kinematics (#FACE, #CYL)."""
+    return axis not in channel.rotary or (state.coordinates.kinematics is not None and axis == channel.table.c_axis)
 
 
 def _unused(channel: Channel, block: NcBlock, code: GCode, word: str) -> faults.ProgramError:
