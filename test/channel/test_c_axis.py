@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from c_axis_support import LATHE, errors, on_path, run
-from machine_support import MachineBench
+from c_axis_support import LATHE, assert_within_limits, errors, on_path, run
+from machine_support import ROOT, MachineBench
 from replay_support import bits, replay
 
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
@@ -168,3 +168,12 @@ def test_replay_gives_the_same_again() -> None:
     again, first = replay(bench.machine, bench.records, len(bench.blocks["plc"])), bits(bench)
     for unit in ("channel", "s", "x", "z"):
         assert again[unit] == first[unit]
+
+
+def test_example() -> None:
+    """Holes, hexagon, groove past the centre, letters; the spindle turns again at its end."""
+    program = (ROOT / "examples" / "caxis.nc").read_text()
+    bench = MachineBench(program, machine=LATHE).run()
+    assert bench.events == []
+    assert_within_limits(bench)
+    assert max(bench.column("s", "set_speed_rpm")) == 600.0
