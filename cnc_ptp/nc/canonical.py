@@ -66,7 +66,7 @@ class LinearMove(NamedTuple):
 
     `slope` of its acceleration, "" is that of P-CHAN-00071; `full_override`: G166, the override has no effect;
     `transition` to the next motion; `measures`: places of the axes of a measuring run, which the signal of the probe
-    ends; `tap`: the spindle that turns with it; `kinematics`: makes machine positions of the target, which is Cartesian.
+    ends; `tap`: the spindle that turns with it; `kinematics`: makes machine positions of the Cartesian target.
     """
 
     target: tuple[float, ...]

@@ -80,7 +80,7 @@ def leave(channel: Channel, state: ModalState) -> None:
 
 
 def restore(state: ModalState) -> None:
-    """The offsets of before, with units and tables as they are now."""
+    """The offsets before the kinematics, with units and tables as they are now."""
     now, before = state.coordinates, state.coordinates.untransformed
     if before is not None:
         before = before.copy()
