@@ -1,8 +1,6 @@
 """Faults of the C axis: #CAX, #FACE, #CYL; the number 21175 is the vendor's, our own are from 21740."""
 
-from cnc_ptp.nc.faults import Fault, ProgramError
-
-__all__ = ["Fault", "ProgramError"]
+from cnc_ptp.nc.faults import Fault
 
 # The spindle as an axis of the path
 NOT_MAIN = Fault(21175, "spindle {spindle} is not the main spindle: #CAX makes {main} alone an axis of the path")

@@ -21,6 +21,7 @@ from cnc_ptp.nc.arcs import extreme_points
 from cnc_ptp.nc.canonical import CircularMove, Function, KinematicsChange, LinearMove, number
 from cnc_ptp.nc.coordinates.coordinates import Coordinates
 from cnc_ptp.nc.coordinates.placement import refresh
+from cnc_ptp.nc.faults import Fault, ProgramError
 from cnc_ptp.nc.program import Channel, HashCommand, ModalState, NcBlock
 
 FACE: Final = "#FACE [X, C], with the facing axis and the C axis, or #FACE OFF"
@@ -205,5 +206,5 @@ def _require_c_axis(state: ModalState, block: NcBlock, command: HashCommand) -> 
         raise _fault(own.KINEMATICS_WITHOUT_CAX, block, command, command=f"#{command.name}")
 
 
-def _fault(fault: own.Fault, block: NcBlock, command: HashCommand, /, **values: Value) -> own.ProgramError:
+def _fault(fault: Fault, block: NcBlock, command: HashCommand, /, **values: Value) -> ProgramError:
     return fault.at(block.source, command.column, **values)

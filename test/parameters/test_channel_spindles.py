@@ -226,7 +226,10 @@ def test_c_axis() -> None:
 
 
 def test_name_of_the_c_axis_is_that_of_another_axis() -> None:
-    assert refusal(TWO, "default_ax_name_of_spindle: X") == "?"
+    assert refusal(TWO, "default_ax_name_of_spindle: X") == (
+        "P-ERR-25009 m.yaml:8:33: channel list, P-CHAN-00010 default_ax_name_of_spindle of /ch: value X is the name of an"
+        " axis of the channel (P-CHAN-00006)" + END
+    )
 
 
 def test_c_axis_without_a_spindle() -> None:
@@ -236,4 +239,7 @@ def test_c_axis_without_a_spindle() -> None:
 """
     with pytest.raises(ParameterError) as caught:
         load_machine(text, "m.yaml")
-    assert str(caught.value) == "?"
+    assert str(caught.value) == (
+        "P-ERR-25009 m.yaml:2:53: channel list, P-CHAN-00010 default_ax_name_of_spindle of /ch: value C, but the channel"
+        " has no spindle" + END
+    )

@@ -19,7 +19,7 @@ GROWTH: Final = 1.6
 MOST_END_CELLS: Final = 20
 """A first cell is at least the length of its part divided by this."""
 CELL_TURN: Final = 0.1
-"""rad by which the direction may turn in a cell."""
+"""rad by which the direction may turn in a cell; of an axis with a larger q1, part of that by which it may change."""
 
 
 class Geometry(Protocol):
@@ -178,9 +178,7 @@ def division_of(part: PathPart, whole: PathCell, fewest: int = 1, cell_time: flo
     """
     length = part.length
     largest = min(cell_time * sqrt(min(whole.limit, whole.feed)), length / fewest)
-    turn = sqrt(sum([load.second * load.second for load in whole.loads]))
-    if part.transformed:
-        turn /= max(1.0, sqrt(sum([load.first * load.first for load in whole.loads])))
+    turn = sqrt(sum([(load.second / max(1.0, load.first)) ** 2 for load in whole.loads]))
     if turn > 0.0:
         return Division([], max(1, ceil(length / min(largest, CELL_TURN / turn))), 0.0, length, [])
     smallest = max(length / MOST_END_CELLS, whole.jerk * FIRST_CELL_TIME**3 / 6.0)

@@ -135,6 +135,8 @@ class PathBuilder:
             before, curve, motion.span = made
             spans = [before, *curve] if before.length > 0.0 else curve
             of_spans = [self._parts(last if span.block == last.block else motion, span) for span in spans]
+            for part in of_spans[-2] if curve else ():
+                part.feed = min(last.feed, motion.feed)  # the corner is within the middle piece
             return [part for parts in of_spans for part in parts]
         quiet = KINK_CYCLES * self._cycle_time * sqrt(square) if square < inf else 0.0
         parts = self._parts(last, last.span, quiet)
