@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from itertools import pairwise
 from math import degrees
 
 import pytest
@@ -38,7 +39,7 @@ def lines(points: list[complex]) -> str:
 def distance(point: complex, corners: list[complex]) -> float:
     """From a polyline, mm."""
     found = []
-    for begin, end in zip(corners, corners[1:], strict=False):
+    for begin, end in pairwise(corners):
         along = end - begin
         part = ((point - begin) * along.conjugate()).real / abs(along) ** 2
         found.append(abs(point - begin - along * min(1.0, max(0.0, part))))

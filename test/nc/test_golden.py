@@ -26,7 +26,16 @@ def faults_of(part) -> list[Fault]:
     return values + [fault for table in tables for fault in table.values() if isinstance(fault, Fault)]
 
 
-PARTS = (iso_faults, faults, spindle_faults, c_axis_faults, expression_faults, flow_faults, coordinate_faults, tool_faults)
+PARTS = (
+    iso_faults,
+    faults,
+    spindle_faults,
+    c_axis_faults,
+    expression_faults,
+    flow_faults,
+    coordinate_faults,
+    tool_faults,
+)
 FAULTS = [fault for part in PARTS for fault in faults_of(part)]
 
 

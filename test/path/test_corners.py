@@ -372,7 +372,7 @@ def test_a_kink_that_a_cycle_hides():
     """The third difference of the sampled positions is half the jerk of the weakest axis."""
     a, b = Line((0.0, 0.0, 0.0), (10.0, 0.0, 0.0), XYZ), Line((10.0, 0.0, 0.0), (20.0, 1.0, 0.1), XYZ)
     cycle = 0.002
-    v = math.sqrt(kink_square(a.shape(a.length), b.shape(0.0), LIMITS, cycle))
+    v = math.sqrt(kink_square(whole(a, 0), whole(b, 1), LIMITS, cycle))
     path = [a.shape(10.0 + n * v * cycle) if n < 0 else b.shape(n * v * cycle) for n in range(-4, 5)]
     steps = np.diff([[axis[0] for axis in point] for point in path], axis=0) / cycle
     jerk = np.abs(np.diff(steps, axis=0)).max(axis=0) / cycle**2
@@ -385,15 +385,17 @@ def test_a_jump_of_curvature_that_a_cycle_hides():
     """v²/r may jump by half of what the jerk makes of the acceleration in one cycle."""
     line = whole(Line((-10.0, 0.0, 0.0), (0.0, 0.0, 0.0), XYZ), 0)
     arc = whole(Arc((0.0, 0.0, 0.0), (10.0, 10.0, 0.0), (0.0, 10.0), (0, 1), 10.0, 90.0, XYZ), 1)
-    square = kink_square(line.shape(line.length), arc.shape(0.0), LIMITS, 0.002)
+    square = kink_square(line, arc, LIMITS, 0.002)
     assert square / 10.0 == pytest.approx(0.5 * 20000.0 * 0.002, rel=1e-12)
 
 
 def test_where_nothing_jumps_no_velocity_is_too_high():
     line = Line((0.1, 0.2, 0.3), (100.7, 33.3, 47.1), XYZ)
     middle = [axis[0] for axis in line.shape(37.123)]
-    before, behind = Line(line.start, middle, XYZ), Line(middle, line.target, XYZ)
-    assert kink_square(before.shape(before.length), behind.shape(0.0), LIMITS, 0.001) == math.inf
+    assert (
+        kink_square(whole(Line(line.start, middle, XYZ), 0), whole(Line(middle, line.target, XYZ), 1), LIMITS, 0.001)
+        == math.inf
+    )
 
 
 def test_a_corner_with_its_curve_has_no_jump():

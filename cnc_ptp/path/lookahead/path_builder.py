@@ -18,7 +18,7 @@ from cnc_ptp.path.lookahead.corners import Corner, corner, kink_square, quiet_li
 from cnc_ptp.path.lookahead.parts import Geometry, PathPart
 from cnc_ptp.path.lookahead.smoothing import Smoother
 from cnc_ptp.path.lookahead.spans import Curve, Span, whole
-from cnc_ptp.path.transformed_span import divided, positions
+from cnc_ptp.path.transformed_span import divided
 
 SLOWEST: Final = 1.0
 """mm/s; a corner that could only be passed more slowly is an exact stop."""
@@ -149,11 +149,8 @@ class PathBuilder:
         made = None if contour is None else corner(last.span, motion.span, contour, self._path_axes)
         if made is not None and self._passable(made, motion.kinematics):
             return made, inf
-        end, start = last.span.shape(last.span.length), motion.span.shape(0.0)
-        if motion.kinematics is not None:
-            end = motion.kinematics.shape(end, self.reached)
-            start = motion.kinematics.shape(start, positions(end))
-        square = kink_square(end, start, narrower(last.axes, motion.axes), self._cycle_time)
+        limits = narrower(last.axes, motion.axes)
+        square = kink_square(last.span, motion.span, limits, self._cycle_time, motion.kinematics, self.reached)
         if square < inf:
             alone = min(last.span.length, motion.span.length) / (KINK_CYCLES * self._cycle_time)
             square = min(square, alone * alone)
