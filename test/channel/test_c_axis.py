@@ -163,6 +163,11 @@ def test_offset_of_the_c_axis() -> None:
     assert bench.column("s", "set_position_deg")[-1] == pytest.approx(100.0)
 
 
+def test_programs_can_read_the_axis() -> None:
+    bench = run('#CAX\nG00 C30\nP1 = V.A.ACT_POS.C P2 = V.A.ABS.C\n#MSG ["%f %f", P1, P2]\nM30\n')
+    assert [event.text for event in bench.events_of("channel")] == ["30.000000 30.000000"]
+
+
 def test_replay_gives_the_same_again() -> None:
     bench = run(PROGRAM, "- {at: 3.0, to: channel, do: set_override, percent: 40}")
     again, first = replay(bench.machine, bench.records, len(bench.blocks["plc"])), bits(bench)

@@ -8,6 +8,7 @@ from math import degrees
 
 import pytest
 from c_axis_support import (
+    LATHE,
     assert_within_limits,
     errors,
     face_path,
@@ -214,6 +215,31 @@ def test_soft_limits_are_those_of_the_axes() -> None:
         "channel channel: test.nc line 4 column 1 'G01 X150 C150 F2000': axis X: 212.132 mm lies beyond the positive soft"
         " limit 200 mm (P-AXIS-00178); the path stands behind line 3 '#FACE [X, C]' and the program is aborted"
     ]
+
+
+def test_programmed_limits_are_those_of_the_axes() -> None:
+    bench = run(f"G99 X30\n{BEGIN}G01 C30 F2000\nM30\n")
+    assert errors(bench) == [
+        "channel channel: test.nc line 5 column 5 'G01 C30 F2000': axis X: 36.0555 mm lies beyond the positive limit 30 mm"
+        " (G99); the path stands behind line 4 '#FACE [X, C]' and the program is aborted"
+    ]
+
+
+def test_slopes() -> None:
+    bench = run(on_face("#SLOPE [TYPE=STEP]\nG01 C0.5 F2000\nX-20\n#SLOPE [TYPE=SIN2]\nG01 X20"))
+    assert bench.events == []
+    corners = [20.0, 20.0 + 0.5j, -20.0 + 0.5j, 20.0 + 0.5j]
+    assert max(distance(point, corners) for point in of_face(bench)) < MICROMETRE
+
+
+def test_manual_blocks_end_a_kinematics() -> None:
+    scenario = """- {at: 0.1, to: channel, do: mdi, text: "#CAX\\nG00 X20 C0"}
+- {at: 4.0, to: channel, do: mdi, text: "#CAX\\n#FACE [X, C]\\nG01 X10 C10 F2000"}
+- {at: 8.0, to: channel, do: mdi, text: "G01 X12 F2000"}"""
+    bench = MachineBench("M30\n", scenario, machine=LATHE).run(10.0)
+    assert bench.events == []
+    assert bench.position("x") == 12.0
+    assert [offsets.systems for block in bench.blocks["channel"] for offsets in block.offsets][-1] == []
 
 
 def test_replay_gives_the_same_again() -> None:
