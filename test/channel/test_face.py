@@ -220,8 +220,8 @@ def test_soft_limits_are_those_of_the_axes() -> None:
 def test_programmed_limits_are_those_of_the_axes() -> None:
     bench = run(f"G99 X30\n{BEGIN}G01 C30 F2000\nM30\n")
     assert errors(bench) == [
-        "channel channel: test.nc line 5 column 5 'G01 C30 F2000': axis X: 36.0555 mm lies beyond the positive limit 30 mm"
-        " (G99); the path stands behind line 4 '#FACE [X, C]' and the program is aborted"
+        "channel channel: test.nc line 5 column 1 'G01 C30 F2000': axis X: 36.0555 mm lies beyond the software limit 30 mm"
+        " of G99; the path stands behind line 4 '#FACE [X, C]' and the program is aborted"
     ]
 
 
