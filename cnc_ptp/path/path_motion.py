@@ -19,7 +19,7 @@ from cnc_ptp.path.lookahead.path_builder import LinkedMotion, PathBuilder
 from cnc_ptp.path.lookahead.spans import whole
 from cnc_ptp.path.planner import PLANNERS, Planner
 from cnc_ptp.path.shape import AxisState, without_jerk
-from cnc_ptp.path.transformed_span import divided, require_possible
+from cnc_ptp.path.transformed_span import require_possible
 
 CARTESIAN = ("X", "Y", "Z")
 AxisStates = tuple[AxisState, ...]
@@ -330,8 +330,6 @@ class PathMotion:
 
     def _make_linked(self, start: tuple[float, ...], motion: Path, block: int) -> LinkedMotion:
         plan = self.plan(motion, start)
-        if motion.kinematics is not None:
-            divided(whole(plan.element, block), motion.kinematics, motion.kinematics.inverse(start, self.position))
         return self._linked_motion(plan, motion, block)
 
     def _linked_motion(self, plan: Plan, motion: Path, block: int) -> LinkedMotion:

@@ -132,6 +132,15 @@ def test_leaving_the_centre_at_another_angle() -> None:
     assert bench.position("x") == pytest.approx(0.0)
 
 
+def test_leaving_the_centre_at_another_angle_on_a_milling_machine() -> None:
+    bench = run(on_face("G01 X0 F20\nX-5 C-0.05\nX-10"), machine=lathe(face_kind=2))
+    assert errors(bench) == [
+        "channel channel: the path of #FACE [X, C] leaves the centre of rotation at an angle at which the C axis is not"
+        " in test.nc line 5 'X-5 C-0.05'; the path stops on its ramp and the program is aborted"
+    ]
+    assert bench.position("x") == pytest.approx(0.0)
+
+
 def test_contouring() -> None:
     program = on_face("#CONTOUR MODE [DEV PATH_DEV=0.02]\nG261\n" + lines(HEXAGON[1:] + HEXAGON[:1]))
     bench = run(program)

@@ -18,7 +18,7 @@ from cnc_ptp.path.lookahead.corners import Corner, corner, kink_square, quiet_li
 from cnc_ptp.path.lookahead.parts import Geometry, PathPart
 from cnc_ptp.path.lookahead.smoothing import Smoother
 from cnc_ptp.path.lookahead.spans import Curve, Span, whole
-from cnc_ptp.path.transformed_span import divided
+from cnc_ptp.path.transformed_span import divided, positions, require_possible
 
 SLOWEST: Final = 1.0
 """mm/s; a corner that could only be passed more slowly is an exact stop."""
@@ -83,7 +83,19 @@ class PathBuilder:
         """False if the path has to stop before `motion`, whatever its velocity."""
         if self._smoother is not None or motion.transition.smoothing is not None or self._last is None:
             return True  # where a smooth curve begins and ends is known later; it may stop there
-        return self._join(self._last, motion)[1] > 0.0
+        return self._possible(self._last, motion) and self._join(self._last, motion)[1] > 0.0
+
+    def _possible(self, last: LinkedMotion, motion: LinkedMotion) -> bool:
+        """The axes behind a kinematics can run `motion` from where `last` leaves them."""
+        kinematics = motion.kinematics
+        if kinematics is None:
+            return True
+        end = positions(kinematics.shape(last.span.shape(last.span.length), self.reached))
+        try:
+            require_possible(motion.span, kinematics, end)
+        except CncError:
+            return False  # reported when the path gets there
+        return True
 
     def add(self, motion: LinkedMotion) -> list[PathPart]:
         """The parts that are known once `motion` follows."""
