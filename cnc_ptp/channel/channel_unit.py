@@ -95,7 +95,7 @@ class ChannelUnit(Unit):
         self._parameters = parameters
         nodes = [axis.node for axis in parameters.axes]
         functions = FunctionOutput(parameters, spindles, request_numbers or numbers(1))
-        self._path_spindle = PathSpindle(parameters.name, functions.spindles)
+        self._path_spindle = PathSpindle(parameters.name, functions.spindles, parameters.c_axis_ramp)
         on_path = [axes[node] for node in nodes]
         self._cutting_speed, self._feed_per_turn = functions.cutting_speed, FeedPerTurn(functions.spindles)
         turns = self._feed_per_turn.turns
@@ -357,7 +357,7 @@ class ChannelUnit(Unit):
         else:
             self._sequence.stream.look_ahead()
             self._watch_interpreter(first_cycle)
-        self._axes.give(rows.axes[count - 1], on_path=on_path)
+        self._axes.give(rows.axes[count - 1][: len(self._axes.nodes)], on_path=on_path)
         self._element_begins = begins_element(*rows.distance_to_go[count - 1 :])
         self._update_progress()
         if self._sequence.finished and self._state_at_end is not None:
@@ -414,7 +414,8 @@ class ChannelUnit(Unit):
         for command in outgoing.commands:
             self._commands_sent += 1
             command.id = self._commands_sent
-        by_axis = [state for axis in zip(*rows.axes[:count], strict=True) for state in axis]
+        axes = list(zip(*rows.axes[:count], strict=True))[: len(self._axes.nodes)]
+        by_axis = [state for axis in axes for state in axis]
         position, velocity, acceleration, jerk = map(list, zip(*by_axis, strict=True)) if by_axis else ([], [], [], [])
         return ChannelBlock(
             first_cycle=tick.first_cycle,
@@ -509,7 +510,7 @@ class ChannelUnit(Unit):
         state = self._state_code()
         held = state == C.RUNNING and self._motion.held
         if rows.with_spindle:
-            rows.spindle += spindle or [self._motion.spindle_state] * count
+            rows.spindle += spindle or [self._motion.spindle_travel(axes) for axes, _, _ in points]
         for axes, velocity, distance_to_go in points:
             rows.axes.append(axes)
             rows.path_velocity.append(velocity)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from cnc_ptp.errors import CncError, Value, did_you_mean, nearest
+from cnc_ptp.kinematics.kinematics import Kinematics
 from cnc_ptp.nc.canonical import OffsetReport
 from cnc_ptp.nc.coordinates.codes import LAST_OFFSET, offset_values
 from cnc_ptp.nc.coordinates.coordinates import NO_CHANGES, Coordinates
@@ -31,6 +32,7 @@ class OffsetMemory:
         self._shown: OffsetReport | None = None
         self._news: list[ChannelOffsets] = []
         self._frame: Frame | None = None
+        self._kinematics: Kinematics | None = None
         self._stale = True
         """What is shown may not be what an MDI text would start with."""
 
@@ -115,7 +117,7 @@ class OffsetMemory:
         self._stale = True
         if report == self._shown:
             return
-        self._shown = report
+        self._shown, self._kinematics = report, report.kinematics
         linear, none = matrix([report.matrix[row : row + 3] for row in (0, 3, 6)]), not any(report.shift)
         same = none and linear == IDENTITY
         self._frame = None if same else Frame(linear, report.shift, self._channel.main)
@@ -128,6 +130,8 @@ class OffsetMemory:
 
     def programmed(self, position: Sequence[float]) -> list[float]:
         """A machine position as programs name it now; radii also where `shown` has diameters."""
+        if self._kinematics is not None:
+            position = self._kinematics.forward(tuple(position))
         return list(position if self._frame is None else self._frame.to_programmed(position))
 
     def shown(self, position: Sequence[float]) -> list[float]:
@@ -154,7 +158,7 @@ class OffsetMemory:
             mirrored=list(report.mirrored),
             rotated=report.angle is not None,
             rotation_angle=report.angle or 0.0,
-            systems=list(report.systems),
+            systems=[*([report.kinematics.name] if report.kinematics is not None else []), *report.systems],
             machine_coordinates=report.machine,
             matrix=list(report.matrix),
             shift=list(report.shift),

@@ -35,7 +35,7 @@ class PathAxes:
         self.on_path = False
         self.beside: list[str] = []
         self.withheld: list[str] = []
-        self._given = motion.states
+        self._given = motion.states[: len(self.nodes)]
         self._referenced_at_start = {node: axes[node].referenced_at_start for node in nodes}
 
     def give(self, setpoints: AxisStates, *, on_path: bool) -> None:

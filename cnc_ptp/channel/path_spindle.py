@@ -1,7 +1,7 @@
-"""The spindle that is an axis of the path for a while (TF5200 spindle 2.3.3, 2.8.6).
+"""The spindle that is an axis of the path for a while (TF5200 spindle 2.3.3, 2.8.6, 2.8.8).
 
-`ready` asks for it and is true when the spindle has reported that it follows: from that block on the channel gives it
-setpoints, in every cycle, until `release`.
+`ready` (G63) and `ready_as_axis` (#CAX) ask for it and are true when the spindle has reported that it follows: from
+that block on the channel gives it setpoints, in every cycle, until `release`.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from math import inf
 from cnc_ptp.channel.commanded_spindle import CommandedSpindle
 from cnc_ptp.channel.spindle_functions import SpindleFunctions
 from cnc_ptp.errors import CncError
+from cnc_ptp.nc.canonical import SpindleCommand
 from cnc_ptp.path.geometry import AxisLimits
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.blocks import Command
@@ -20,6 +21,7 @@ from cnc_ptp.spindle.tool_limits import SpindleLimits
 
 SPINDLE_TURNS = 22060
 SPINDLE_LEFT_PATH = 22061
+SPINDLE_NOT_REFERENCED = 22120
 
 
 class PathSpindle:
@@ -27,16 +29,20 @@ class PathSpindle:
 
     node      the spindle that follows the path; "" for none
     override  factor of its override on the path
+    angle     where the path has taken it over, deg, 0 … 360
+    is_axis   it is the C axis (#CAX), not the spindle of a tap
     """
 
-    def __init__(self, channel: str, spindles: SpindleFunctions) -> None:
-        """`channel`: its name; `spindles` of it."""
-        self._channel, self._spindles = channel, spindles
+    def __init__(self, channel: str, spindles: SpindleFunctions, ramp_time: float = 0.02) -> None:
+        """`channel`: its name; `spindles` of it; `ramp_time`: s in which the C axis builds up its acceleration."""
+        self._channel, self._spindles, self._ramp_time = channel, spindles, ramp_time
         self._spindle: CommandedSpindle | None = None
         self._asked_in: int | None = None
         """First cycle of the block with the command; None before it has gone out."""
         self.node = ""
         self.override = self._known_override = 1.0
+        self.angle = 0.0
+        self.is_axis = False
         self._commands: list[Command] = []
 
     @property
@@ -60,6 +66,11 @@ class PathSpindle:
             up = down = min(limits.ramp.acceleration(0.0), limits.ramp.acceleration(speed))
         return AxisLimits(speed, up, down, inf)
 
+    def axis_limits(self, name: str) -> AxisLimits:
+        """Of the C axis, which has a limit of the jerk, too (P-CHAN-90045)."""
+        limits = self.limits(name)
+        return limits._replace(jerk=max(limits.acceleration, limits.deceleration) / self._ramp_time)
+
     def ready(self, name: str) -> bool:
         """The spindle follows; it is asked to when it stands. Raises CncError 22060 for one that turns on its own."""
         spindle = self._spindles[name]
@@ -67,6 +78,32 @@ class PathSpindle:
             self._spindle, self._asked_in = spindle, None
             self._send("follow_path")
         return self.node == spindle.node
+
+    def ready_as_axis(self, name: str) -> bool:
+        """The spindle is the C axis; it homes before if it has no reference point, and is asked to when it stands.
+
+        Raises CncError 22060 for one that turns, 22120 for one that does not home automatically.
+        """
+        spindle = self._spindles[name]
+        if self._spindle is None and not spindle.pending and stands(spindle, alone=True):
+            if not self._referenced(spindle):
+                return False
+            self._spindle, self._asked_in, self.is_axis = spindle, None, True
+            self._send("follow_path")
+        return self.node == spindle.node
+
+    def _referenced(self, spindle: CommandedSpindle) -> bool:
+        """It has a reference point; else it homes (P-AXIS-00015). Raises CncError 22120."""
+        assert spindle.block is not None and spindle.unit is not None
+        if spindle.block.referenced[-1]:
+            return True
+        if not spindle.unit.automatic_homing:
+            how = "does not home automatically (P-AXIS-00015 0x100)"
+            then = f"home it before #CAX (G74 {spindle.name}1)"
+            reason = f"spindle {spindle.node} has no reference point and {how}; {then}"
+            raise CncError(SPINDLE_NOT_REFERENCED, reason)
+        self._commands += self._spindles.plain(SpindleCommand(spindle.name, "home"))
+        return False
 
     def read(self, first_cycle: int) -> bool:
         """The report of the spindle for the block before `first_cycle`; whether `override` has changed.
@@ -77,7 +114,8 @@ class PathSpindle:
         block = None if spindle is None else spindle.block
         if spindle is not None and block is not None and self._asked_in is not None and first_cycle > self._asked_in:
             if block.status_bits[-1] & SpindleBit.ON_PATH:
-                self.node = spindle.node
+                if not self.node:
+                    self.node, self.angle = spindle.node, block.set_position_deg[-1] % 360.0
                 suppressed = block.status_bits[-1] & SpindleBit.OVERRIDE_SUPPRESSED
                 self.override = 1.0 if suppressed else block.override_percent[-1] / 100.0
             elif self.node:
@@ -94,7 +132,7 @@ class PathSpindle:
 
     def _forget(self) -> None:
         """No spindle follows."""
-        self._spindle, self._asked_in = None, None
+        self._spindle, self._asked_in, self.is_axis = None, None, False
         self.node, self.override = "", 1.0
 
     def _send(self, command: str) -> None:
@@ -111,8 +149,8 @@ def limits_in_gear(spindle: CommandedSpindle) -> tuple[SpindleLimits, int]:
     return SpindleLimits(gear, spindle.tool, control_limit=inf if unit.open_loop else gear.control_limit), stage
 
 
-def stands(spindle: CommandedSpindle) -> bool:
-    """It may be taken over: it stands, or turns as a slave at its speed; False while it comes to that.
+def stands(spindle: CommandedSpindle, *, alone: bool = False) -> bool:
+    """It may be taken over: it stands, or (not `alone`) turns as a slave at its speed; False while it comes to that.
 
     Raises CncError 22060 for one that turns on its own.
     """
@@ -122,7 +160,7 @@ def stands(spindle: CommandedSpindle) -> bool:
     state = block.state[-1]
     if state != S.CONTINUOUS_MOTION:
         return state == S.STANDSTILL and block.speed_zero[-1]
-    if block.master:
+    if block.master and not alone:
         return block.speed_reached[-1]
     rpm = block.set_speed_rpm[-1]
     reason = f"spindle {spindle.node} turns at {rpm:g} rpm; it must be at a standstill (M05 or M19 before)"

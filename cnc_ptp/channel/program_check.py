@@ -138,19 +138,24 @@ class ProgramCheck:
         """`axes` and `spindles` of the machine by node name."""
         self._channel = channel
         self._axes = [axes[axis.node] for axis in channel.axes]
-        self._axis_names = tuple(axis.name for axis in channel.axes)
+        self._own_names = tuple(axis.name for axis in channel.axes)
+        """Of the axes that have a node; the C axis, which is a spindle, comes behind them."""
+        self._axis_names = channel.path_axes
         self._spindles = spindle_table(channel, spindles)
         self._nodes = {spindle.name: spindle.node for spindle in channel.spindles}
         self._units = spindles
         indices = {name: index for index, name in enumerate(self._axis_names)}
         ratio = channel.circle_center_ratio
         self._rotary = frozenset(axis.name for axis in channel.axes if axes[axis.node].rotary)
+        self._rotary |= frozenset(self._axis_names[len(self._axes) :])
         tolerance = channel.circle_center_tolerance
         self.vocabulary = VOCABULARIES[channel.dialect]
         """That of the machine file."""
         self.cycles = channel.cycles
-        self._references = tuple(axis.homing.reference_position for axis in self._axes)
-        self._soft_limits = tuple((axis.soft_limit_negative, axis.soft_limit_positive) for axis in self._axes)
+        spindles_on_path = len(self._axis_names) - len(self._axes)
+        self._references = tuple([axis.homing.reference_position for axis in self._axes] + [0.0] * spindles_on_path)
+        limits = [(axis.soft_limit_negative, axis.soft_limit_positive) for axis in self._axes]
+        self._soft_limits = tuple(limits + [(-inf, inf)] * spindles_on_path)
         self.nc = Channel(
             self._axis_names,
             indices,
@@ -249,7 +254,7 @@ class ProgramCheck:
     @property
     def start(self) -> tuple[float, ...]:
         """Start positions of the channel's axes, mm."""
-        return tuple(axis.start_position for axis in self._axes)
+        return (*[axis.start_position for axis in self._axes], *[0.0] * (len(self._axis_names) - len(self._axes)))
 
     def state(
         self,
@@ -411,7 +416,7 @@ class ProgramCheck:
 
     def _names(self, nodes: Collection[str]) -> set[str]:
         """Names in programs of the axes with these nodes."""
-        return {name for name, axis in zip(self._axis_names, self._axes, strict=True) if axis.name in nodes}
+        return {name for name, axis in zip(self._own_names, self._axes, strict=True) if axis.name in nodes}
 
     @property
     def unreferenced_at_start(self) -> list[str]:
@@ -421,7 +426,7 @@ class ProgramCheck:
     def _homed(self, motion: HomeAxes, source: Source) -> set[str]:
         """The axes of G74. Raises ProgramError 60313 for one that cannot be homed."""
         homed = {name for group in motion.groups for name in group}
-        for name, axis in zip(self._axis_names, self._axes, strict=True):
+        for name, axis in zip(self._own_names, self._axes, strict=True):
             if name in homed and axis.homing.kind == DISABLED:
                 text = f"axis {name} cannot be homed (P-AXIS-00299 = DISABLED)"
                 raise ProgramError(HOMING_DISABLED, text, source, source.column(name))
@@ -430,9 +435,9 @@ class ProgramCheck:
     def _require_measuring_axes(self, motion: LinearMove, source: Source) -> None:
         """Raises ProgramError 50059 for a measuring run of an axis that may not take part (P-AXIS-00118)."""
         for place in motion.measures:
-            name = self._axis_names[place]
+            name = self._own_names[place]
             if not self._axes[place].probe.measures:
-                able = [other for other, axis in zip(self._axis_names, self._axes, strict=True) if axis.probe.measures]
+                able = [other for other, axis in zip(self._own_names, self._axes, strict=True) if axis.probe.measures]
                 text = f"axis {name} cannot measure (P-AXIS-00118); axes that can: {', '.join(able) or 'none'}"
                 raise ProgramError(NO_MEASURING_AXIS, text, source, source.column(name))
 
@@ -444,7 +449,7 @@ class ProgramCheck:
         missing: Collection[str],
     ) -> None:
         """Raises ProgramError 22034 for a motion of an axis in `missing`."""
-        for index, (name, axis) in enumerate(zip(self._axis_names, self._axes, strict=True)):
+        for index, (name, axis) in enumerate(zip(self._own_names, self._axes, strict=True)):
             turns = isinstance(motion, CircularMove) and motion.turns(index)
             if axis.homing.required and name in missing and (turns or motion.target[index] != start[index]):
                 text = f"axis {name} is not referenced (P-MACH-00061); G74 {name}1 first"
@@ -465,7 +470,7 @@ class ProgramCheck:
 
     def check_target(self, target: tuple[float, ...], source: Source, unlimited: Collection[str] = ()) -> None:
         """Raises ProgramError 120002 / 120003 for a point (mm) beyond a soft limit; `unlimited` axes have none."""
-        for name, axis, position in zip(self._axis_names, self._axes, target, strict=True):
+        for name, axis, position in zip(self._own_names, self._axes, target, strict=False):  # C has none
             unit = "deg" if axis.rotary else "mm"
             if axis.soft_limit_negative <= position <= axis.soft_limit_positive or name in unlimited:
                 continue
@@ -491,7 +496,7 @@ class ProgramCheck:
 
     def _compensation(self, function: CompensationSwitch, source: Source) -> None:
         """Raises ProgramError 70495 when friction compensation is switched on for an axis that does not permit it."""
-        axis = self._axes[self._axis_names.index(function.axis)]
+        axis = self._axes[self._own_names.index(function.axis)]
         if function.on and not axis.control.friction.permitted:
             reason = "friction compensation is not activated (P-AXIS-00522 lr_param.frict_comp = 0)"
             text = f"axis {function.axis}: {reason}"
@@ -526,7 +531,9 @@ def spindle_table(channel: ChannelParameters, spindles: Mapping[str, SpindlePara
     groups = catalogue().arrays["koppel_gruppe"].size
     coupled = tuple(Pair(slave, master) for slave, master in channel.coupled)
     main = channel.main_spindle or "S"
-    return SpindleTable(table, main, channel.gear_change, coupled, groups, channel.pitch_tolerance)
+    return SpindleTable(
+        table, main, channel.gear_change, coupled, groups, channel.pitch_tolerance, channel.c_axis, channel.face_kind
+    )
 
 
 def _spindle(spindle: ChannelSpindle, unit: SpindleParameters | None) -> Spindle:

@@ -43,6 +43,7 @@ from cnc_ptp.nc.canonical import (
     OffsetReport,
     OrderedError,
     Source,
+    SpindleAxis,
     SpindleCommand,
     SpindleFunction,
     SpindleLink,
@@ -256,6 +257,17 @@ class ProgramSequence:
         for wait in self._waits:
             if wait.expected.condition is Condition.SPEED and wait.expected.spindle in spindles:
                 wait.expected = Expectation(wait.expected.spindle)
+
+    def _c_axis_taken(self) -> bool:
+        """The spindle of #CAX is an axis of the path, or the block has none. Raises CncError 22060, 22120."""
+        assert self._block is not None
+        for function in self._block.functions:
+            if isinstance(function, SpindleAxis) and function.on:
+                spindle = self._path_spindle
+                if not spindle.ready_as_axis(function.spindle):
+                    return False
+                self._motion.take_c_axis(spindle.angle, spindle.axis_limits(function.spindle))
+        return True
 
     def _stop_spindles(self) -> None:
         """M05 for the spindles that the channel has started, except those to keep; its couplings end."""
@@ -472,7 +484,7 @@ class ProgramSequence:
         if first_cycle == self._waited_at:
             return False  # the axes report where they are once in a block
         if self.stream.awaited:
-            actual = actual_positions(self._feedback, self._axes)
+            actual = self._actual_positions()
             override = round(100.0 * self._motion.override, 9)
             self.stream.give(actual, self._motion.position, self._timers.read, self._measuring.touch, override)
         block: CanonicalBlock | None = None
@@ -487,7 +499,7 @@ class ProgramSequence:
             self._wait(Phase.WAIT_END, Moment.AFTER, *ALL_LATE)
             return True
         self._reach(block)
-        if leaves_spindle(block):
+        if leaves_spindle(block, is_axis=self._path_spindle.is_axis):
             self._path_spindle.release()
         gear = self._functions.gear_change(block)
         if not gear.commands:
@@ -496,6 +508,11 @@ class ProgramSequence:
         self._queue(gear)
         self._wait(Phase.WAIT_GEAR, Moment.BEFORE)
         return True
+
+    def _actual_positions(self) -> tuple[float, ...]:
+        """As the axes have reported them last, 0 for one that has not yet; of the C axis as it is set."""
+        set_positions = self._motion.position[len(self._axes) :]
+        return (*actual_positions(self._feedback, self._axes), *set_positions)
 
     def _reach(self, block: CanonicalBlock) -> None:
         """The block is the active one."""
@@ -532,11 +549,13 @@ class ProgramSequence:
                 self._note(function.number, function.text)
 
     def _start_motion(self, first_cycle: int, cycle: int) -> bool:
-        """False while the interpreter computes the block with which it is linked, and while a measuring run waits for
-        the next block: then all cycles before it have been reported.
+        """False while the interpreter computes the block with which it is linked, while a spindle becomes an axis of
+        the path, and while a measuring run waits for the next block: then all cycles before it have been reported.
         """
         motion = self._block.motion if self._block else None
         if motion is None:
+            if self._block is not None and not self._c_axis_taken():
+                return False
             self.motion_ended()
         elif isinstance(motion, HomeAxes):
             self._homing.begin(motion.groups)
@@ -674,12 +693,18 @@ class ProgramSequence:
         self._waits = sorted([*self._waits, *waits], key=lambda wait: ORDER[wait.until])
 
 
-def leaves_spindle(block: CanonicalBlock) -> bool:
-    """A spindle that the path moves is released before the block: it has another motion, or commands for spindles."""
+def leaves_spindle(block: CanonicalBlock, *, is_axis: bool) -> bool:
+    """A spindle that the path moves is released before the block: it has another motion, or commands for spindles.
+
+    `is_axis`: it is the C axis, which only #CAX OFF ends.
+    """
+    if is_axis:
+        return any(isinstance(function, SpindleAxis) and not function.on for function in block.functions)
     motion = block.motion
     if isinstance(motion, (LinearMove, CircularMove, HomeAxes)):
         return not (isinstance(motion, LinearMove) and motion.tap is not None)
-    return any(isinstance(function, (SpindleFunction, SpindleCommand, SpindleLink)) for function in block.functions)
+    moves_spindles = (SpindleFunction, SpindleCommand, SpindleLink, SpindleAxis)
+    return any(isinstance(function, moves_spindles) for function in block.functions)
 
 
 def actual_positions(feedback: Mapping[str, CycleBlock], axes: Sequence[str]) -> tuple[float, ...]:

@@ -8,7 +8,7 @@ import os
 from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
 
-ROOMS = ("motion", "path", "nc", "axis", "spindle", "control", "channel", "plc", "machine", "protocol")
+ROOMS = ("motion", "path", "kinematics", "nc", "axis", "spindle", "control", "channel", "plc", "machine", "protocol")
 LEFT_OUT = ("nc/faults.py",)
 """Exceptions: they take the values of their text as keywords, which mypyc mixes up with its own."""
 

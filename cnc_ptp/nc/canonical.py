@@ -13,6 +13,7 @@ functions have finished.
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
+from cnc_ptp.kinematics.kinematics import Kinematics
 from cnc_ptp.nc.contour import THROUGH, Transition
 
 
@@ -92,7 +93,8 @@ class LinearMove(NamedTuple):
     `slope` of its acceleration, "" is that of P-CHAN-00071; `full_override`: G166, the override has no effect;
     `transition` to the next motion; `measures`: places of the axes of a measuring run, which the signal of the probe
     ends; `tap`: the spindle that turns with it; `thread`: a spindle leads the move, `feed` is what its speed amounts to
-    (0.0: not known); `per_turn`: of G95, `feed` is that at the commanded speed.
+    (0.0: not known); `per_turn`: of G95, `feed` is that at the commanded speed; `kinematics`: makes machine positions
+    of the Cartesian target.
     """
 
     target: tuple[float, ...]
@@ -105,6 +107,7 @@ class LinearMove(NamedTuple):
     tap: Tap | None = None
     thread: Thread | None = None
     per_turn: FeedPerTurn | None = None
+    kinematics: Kinematics | None = None
 
 
 def led_by_spindle(motion: object) -> bool:
@@ -121,7 +124,7 @@ class CircularMove(NamedTuple):
 
     `plane` holds the axis indices (first, second), `center` is absolute in that plane (mm), `radius` in mm,
     `sweep` in degrees, positive from the first towards the second axis (G03), 0 < |sweep| <= 360; `feed` in mm/s;
-    `slope`, `full_override`, `transition` and `per_turn` as in LinearMove.
+    `slope`, `full_override`, `transition`, `per_turn` and `kinematics` as in LinearMove.
     `directions`: in a coordinate system that is tilted, where the two axes of the plane point in the machine; `center`
     is then along them. They are at right angles to each other and to the linear motion of X, Y and Z.
     """
@@ -137,6 +140,7 @@ class CircularMove(NamedTuple):
     transition: Transition = THROUGH
     directions: tuple[Direction, Direction] | None = None
     per_turn: FeedPerTurn | None = None
+    kinematics: Kinematics | None = None
 
     def turns(self, axis: int) -> bool:
         """Whether the axis with this index takes part in the circle."""
@@ -212,6 +216,19 @@ class SpindleLink(NamedTuple):
     on: bool
     num: float = 1.0
     den: float = 1.0
+
+
+class SpindleAxis(NamedTuple):
+    """#CAX: the spindle becomes the last axis of the path where it stands; #CAX OFF: it is a spindle again."""
+
+    spindle: str
+    on: bool
+
+
+class KinematicsChange(NamedTuple):
+    """#FACE, #CYL: positions behind it are those of the kinematics; None: of the axes again. The path stands."""
+
+    kinematics: Kinematics | None
 
 
 class ExplicitSynchronisation(NamedTuple):
@@ -308,6 +325,8 @@ Function = (
     | GearChange
     | CuttingSpeed
     | SpindleLink
+    | SpindleAxis
+    | KinematicsChange
     | ExplicitSynchronisation
     | WaitForPath
     | Timer
@@ -326,7 +345,7 @@ class OffsetReport(NamedTuple):
     machine = shift + matrix · programmed for X, Y, Z (matrix row by row), shift + programmed for the other axes.
     `zero_index`: 0 is G53, 1 G54; `scale` of #SCALE, `mirrored` by G21 to G23, `angle` of #ROTATION or None;
     `systems`: #ACS and #CS that are on, the outermost first; `machine`: #MCS is on; `diameter`: place of the axis that
-    is shown in diameters (G51, P-CHAN-00256), -1 none.
+    is shown in diameters (G51, P-CHAN-00256), -1 none; `kinematics`: what follows behind these offsets (#FACE, #CYL).
     """
 
     zero_index: int
@@ -344,6 +363,7 @@ class OffsetReport(NamedTuple):
     matrix: tuple[float, ...]
     shift: tuple[float, ...]
     diameter: int = -1
+    kinematics: Kinematics | None = None
 
 
 class CanonicalBlock(NamedTuple):

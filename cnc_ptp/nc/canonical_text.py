@@ -12,11 +12,13 @@ from cnc_ptp.nc.canonical import (
     Function,
     GearChange,
     HomeAxes,
+    KinematicsChange,
     LanguageWarning,
     LinearMove,
     Message,
     Motion,
     OrderedError,
+    SpindleAxis,
     SpindleCommand,
     SpindleFeedforward,
     SpindleFunction,
@@ -59,6 +61,10 @@ def format_function(function: Function) -> str:
         case SpindleLink(slave, master, on, num, den):
             ratio = "" if num == den else f" {number(num)}/{number(den)}"
             return f"{'link' if on else 'unlink'} {slave}={master}{ratio}"
+        case SpindleAxis(spindle, on):
+            return f"{spindle}[{'axis of the path' if on else 'spindle'}]"
+        case KinematicsChange(kinematics):
+            return "positions of the axes" if kinematics is None else f"positions of {kinematics.name}"
         case ExplicitSynchronisation():
             return "wait for MVS_SLP"
         case WaitForPath():
@@ -111,6 +117,7 @@ def _motion(motion: Motion) -> str:
     slope += _transition(motion.transition)
     if isinstance(motion, LinearMove) and motion.thread is not None:
         return f"thread {target} {_thread(motion.thread)}"
+    slope += "" if motion.kinematics is None else f" {motion.kinematics.name}"
     if isinstance(motion, LinearMove):
         kind = "measure" if motion.measures else "line"
         if motion.tap is not None:

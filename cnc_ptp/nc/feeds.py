@@ -72,17 +72,22 @@ def timed(
         return motion
     if state.feed_mode == PER_TURN:
         return turning.with_spindle(channel, state, block, programmed, motion)
-    feed = path_length(channel, state.position, motion) / state.block_time
+    kinematics = state.coordinates.kinematics
+    also = () if kinematics is None else kinematics.plane
+    feed = path_length(channel, state.position, motion, also) / state.block_time
     if state.feed_mode == INVERSE:
         state.block_time = 0.0
     return motion._replace(feed=feed)
 
 
-def path_length(channel: Channel, start: tuple[float, ...], motion: LinearMove | CircularMove) -> float:
-    """Of the main axes; of all axes if these do not move."""
+def path_length(
+    channel: Channel, start: tuple[float, ...], motion: LinearMove | CircularMove, also: tuple[int, ...] = ()
+) -> float:
+    """Of the main axes and `also` of others, by their places; of all axes if these do not move."""
+    places = {index for index in (*channel.main, *also) if index >= 0}
     distances = [target - begin for begin, target in zip(start, motion.target, strict=True)]
     if isinstance(motion, CircularMove):
         linear = linear_part(distances, motion)
-        return hypot(motion.radius * radians(motion.sweep), *[linear[index] for index in channel.main if index >= 0])
-    main = hypot(*[distances[index] for index in channel.main if index >= 0])
+        return hypot(motion.radius * radians(motion.sweep), *[linear[index] for index in sorted(places)])
+    main = hypot(*[distances[index] for index in sorted(places)])
     return main or hypot(*distances)

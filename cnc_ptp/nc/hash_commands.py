@@ -7,7 +7,7 @@ vendor's programming manual.
 import re
 from collections.abc import Callable
 
-from cnc_ptp.nc import faults, messages, spindle_faults, spindle_links, transitions
+from cnc_ptp.nc import c_axis, faults, messages, spindle_faults, spindle_links, transformations, transitions
 from cnc_ptp.nc.canonical import AVAILABLE_SLOPES, SLOPES, ExplicitSynchronisation, Function, Timer, WaitForPath
 from cnc_ptp.nc.coordinates import commands
 from cnc_ptp.nc.expressions.nodes import SelfDefined
@@ -224,6 +224,12 @@ COMMANDS: dict[str, Run] = {
     "AX LINK": spindle_links.define,
     "SLOPE DEFAULT": default_slope,
     "SLOPE": slope,
+    "CAX OFF": c_axis.end,
+    "CAX": c_axis.begin,
+    "FACE OFF": transformations.off,
+    "FACE": transformations.face,
+    "CYL OFF": transformations.off,
+    "CYL": transformations.cylinder,
     "FLUSH": flush,
     "FLUSH WAIT": flush,
     "FLUSH CONTINUE": flush_continue,

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 
-from cnc_ptp.nc import tapping, turning
+from cnc_ptp.nc import c_axis, c_axis_faults, tapping, transformations, turning
 from cnc_ptp.nc.arcs import extreme_points
 from cnc_ptp.nc.block_search import BlockSearch
 from cnc_ptp.nc.canonical import (
@@ -12,16 +12,18 @@ from cnc_ptp.nc.canonical import (
     CircularMove,
     Function,
     HomeAxes,
+    KinematicsChange,
     LinearMove,
     Motion,
     Source,
+    SpindleAxis,
     Timer,
     WaitForPath,
 )
 from cnc_ptp.nc.contour import THROUGH
 from cnc_ptp.nc.controls import bracketed_controls
 from cnc_ptp.nc.coordinates.codes import initial_state, select_offset
-from cnc_ptp.nc.coordinates.limits import check_limits
+from cnc_ptp.nc.coordinates.limits import check_limits, require_within
 from cnc_ptp.nc.coordinates.placement import leave_frame, place, refresh
 from cnc_ptp.nc.coordinates.report import offset_report
 from cnc_ptp.nc.expressions import expression_faults
@@ -114,7 +116,7 @@ def interpret(
     """
     index = {axis: position for position, axis in enumerate(axes)}
     table, ratio = spindle_table(spindles), centre_offset_ratio
-    words, turns = program.vocabulary, frozenset(rotary)
+    words, turns = program.vocabulary, frozenset(rotary).union([table.c_axis] if table.c_axis else [])
     channel = Channel(
         axes,
         index,
@@ -134,6 +136,8 @@ def interpret(
     state.position = tuple(start)
     state.tool.written = NOT_WRITTEN
     end_thread(state)
+    state.c_axis = ""
+    transformations.restore(state)
     refresh(channel, state)
     state.reported = True
     if words.first_offset and not state.coordinates.own.zero_index:
@@ -187,14 +191,14 @@ def _programmed(
                     yield from _followed(channel, state, block, canonical, steps, check_target, execution.calls)
                 elif canonical is not None:
                     yield _reported(channel, state, canonical)
-                    if isinstance(motion, HomeAxes) and values.position:
-                        state.position = values.position
-                        refresh(channel, state)
+                    if (isinstance(motion, HomeAxes) or changes_axes(canonical)) and values.position:
+                        transformations.place(channel, state, values.position)
                 if isinstance(motion, LinearMove) and motion.measures and values.touch is not None:
                     _take_measured(channel, values, motion, values.touch)
                 before = None
             if not state.reported:
                 yield _with_offsets(channel, state, CanonicalBlock(source, (), None, ""))
+            transformations.restore(state)
             goes_on = False
         except ProgramError as error:
             error = with_calls(error, execution)
@@ -231,7 +235,10 @@ def _resolve(
 ) -> CanonicalBlock | None:
     """One block with the modal state: selects its G codes, builds motion and functions, moves the position."""
     if block.command is not None:
+        taken = state.c_axis
         commanded = block.command.run(channel, state, block, block.command)
+        if taken:
+            c_axis.check_functions(channel, state, block, commanded)
         return CanonicalBlock(block.source, commanded, None, "", calls=calls) if commanded else None
     path: GCode | None = None
     modal = -1
@@ -249,6 +256,8 @@ def _resolve(
         state.path = modal
     if path is None:
         path = channel.vocabulary.paths[state.path]
+    if channel.table.c_axis:
+        c_axis.check_words(channel, state, block, path)
     for code in block.codes:
         if code.prepare is not None:
             code.prepare(channel, state, block, code)
@@ -277,6 +286,8 @@ def _resolve(
         note_functions(channel, state, block, functions)
     if control or block.controls:
         functions += control + bracketed_controls(channel, state, block, functions)
+    if state.c_axis:
+        c_axis.check_functions(channel, state, block, functions)
     if motion is not None:
         if isinstance(motion, LinearMove) and motion.thread is not None:
             motion = with_speed(channel, state, block, motion, motion.thread)
@@ -307,13 +318,20 @@ def _moved(
     motion = timed(channel, state, block, programmed, place(channel, state, block, motion))
     if isinstance(motion, LinearMove) and motion.measures:
         motion = placed(motion, state.position, block)
+        if state.c_axis:
+            c_axis.check_motion(channel, block, motion)
     elif motion.target == state.position and not isinstance(motion, CircularMove) and not compensated:
         state.programmed = programmed
         return None
-    if check_target is not None and not compensated:
-        _check_move(state.position, motion, block.source, check_target)
-    if state.coordinates.limits and not compensated:
-        check_limits(channel, state.coordinates.limits, state.position, motion, block.source)
+    kinematics = state.coordinates.kinematics
+    if kinematics is not None:
+        if compensated:
+            raise c_axis_faults.NOT_WITH_KINEMATICS.at(
+                block.source, word=state.radius_compensation.code, command=kinematics.name
+            )
+        motion = motion._replace(kinematics=kinematics)
+    if not compensated:
+        _check_placed(channel, state, block, motion, check_target)
     if state.slope:
         motion = motion._replace(slope=state.slope)
     transition = state.once or state.transition
@@ -327,6 +345,39 @@ def _moved(
     if state.turning.speed:
         turning.follow(channel, state, motion)
     return motion
+
+
+def _check_placed(
+    channel: Channel,
+    state: ModalState,
+    block: NcBlock,
+    motion: LinearMove | CircularMove,
+    check_target: CheckTarget | None,
+) -> None:
+    """Soft limits, and limits of the program."""
+    if motion.kinematics is not None:
+        _check_transformed(channel, state, block, motion, check_target)
+        return
+    if check_target is not None:
+        _check_move(state.position, motion, block.source, check_target)
+    if state.coordinates.limits:
+        check_limits(channel, state.coordinates.limits, state.position, motion, block.source)
+
+
+def _check_transformed(
+    channel: Channel,
+    state: ModalState,
+    block: NcBlock,
+    motion: LinearMove | CircularMove,
+    check_target: CheckTarget | None,
+) -> None:
+    """The same for Cartesian targets: soft limits are those of the axes."""
+    points = transformations.check_move(channel, state, block, motion)
+    for point in points if check_target is not None else ():
+        assert check_target is not None
+        check_target(point, block.source)
+    if state.coordinates.limits:
+        require_within(channel, state.coordinates.limits, points[1:], range(len(channel.axes)), block.source)
 
 
 def ends_on_its_own(motion: Motion) -> bool:
@@ -380,7 +431,12 @@ def _with_new_tool(
 
 def awaits_path(block: CanonicalBlock) -> bool:
     """Behind this block the interpreter needs what only the run knows."""
-    return isinstance(block.motion, HomeAxes) or measures(block.motion) or reads_the_run(block)
+    return isinstance(block.motion, HomeAxes) or measures(block.motion) or changes_axes(block) or reads_the_run(block)
+
+
+def changes_axes(block: CanonicalBlock) -> bool:
+    """Behind this block the path has other axes (#CAX, #FACE), which stand where only the run knows."""
+    return any(isinstance(function, (SpindleAxis, KinematicsChange)) for function in block.functions)
 
 
 def reads_the_run(block: CanonicalBlock) -> bool:

@@ -27,6 +27,10 @@ PLANES = {
 }
 
 
+CARTESIAN_PLANE = 17
+"""That of the two axes of a kinematics, the centre of an arc is given by I and J."""
+
+
 def target_of(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> list[float] | None:
     """Target of all axes (G90 absolute, G91 relative), None if the block names no axis; takes F into the state."""
     target: list[float] | None = None
@@ -38,7 +42,7 @@ def target_of(channel: Channel, state: ModalState, block: NcBlock, code: GCode) 
         if index is not None:
             if target is None:
                 target = list(position)
-            if unit != 1.0 and word not in channel.rotary:
+            if unit != 1.0 and is_length(channel, state, word):
                 value *= unit
             target[index] = value if state.absolute else position[index] + value
         elif word == "F":
@@ -52,6 +56,11 @@ def target_of(channel: Channel, state: ModalState, block: NcBlock, code: GCode) 
     if target is not None and state.turning.diameter is not None:
         turning.take_diameter(channel, state, block, target)
     return target
+
+
+def is_length(channel: Channel, state: ModalState, axis: str) -> bool:
+    """Its words are lengths: it is linear, or the C axis behind a kinematics (#FACE, #CYL)."""
+    return axis not in channel.rotary or (state.coordinates.kinematics is not None and axis == channel.table.c_axis)
 
 
 def _unused(channel: Channel, block: NcBlock, code: GCode, word: str) -> faults.ProgramError:
@@ -100,7 +109,7 @@ class _Arc:
 
     def __init__(self, channel: Channel, state: ModalState, block: NcBlock, code: GCode, target: list[float]) -> None:
         self.channel, self.state, self.block, self.code, self.target = channel, state, block, code, target
-        self.plane = PLANES[state.plane]
+        self.plane = PLANES[state.plane] if state.coordinates.kinematics is None else PLANES[CARTESIAN_PLANE]
         self.indices = self._indices()
         first, second = self.indices
         self.start = (state.programmed[first], state.programmed[second])
@@ -108,6 +117,9 @@ class _Arc:
         self.full = arcs.distance(self.start, self.end) < arcs.RESOLUTION
 
     def _indices(self) -> tuple[int, int]:
+        kinematics = self.state.coordinates.kinematics
+        if kinematics is not None:
+            return kinematics.plane
         first, second = (self.channel.axis_index.get(axis) for axis in self.plane.axes)
         if first is None or second is None:
             needed, known = " and ".join(self.plane.axes), ", ".join(self.channel.axes)
@@ -121,8 +133,10 @@ class _Arc:
         """Centre from I, J, K: relative to the start (G162) or absolute (G161); a missing word is 0."""
         for word in given:
             if word not in self.plane.centre_words:
-                plane = "".join(self.plane.axes)
-                raise self._fault(faults.CENTRE_NOT_IN_PLANE, word, word=word, g=f"G{self.state.plane}", plane=plane)
+                kinematics = self.state.coordinates.kinematics
+                g = f"G{self.state.plane}" if kinematics is None else kinematics.name
+                plane = "".join([self.channel.axes[index] for index in self.indices])
+                raise self._fault(faults.CENTRE_NOT_IN_PLANE, word, word=word, g=g, plane=plane)
         unit = self.state.coordinates.unit
         first, second = (self.block.words.get(word, 0.0) * unit for word in self.plane.centre_words)
         if not self.state.centre_absolute:

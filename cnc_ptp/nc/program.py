@@ -199,6 +199,8 @@ class SpindleTable(NamedTuple):
     `main_name`: what programs call whichever spindle is the main one (P-CHAN-00053). `gear_change`: M40 to M45 change
     its gear (P-CHAN-00052). `default_link`: coupling group 0 (P-CHAN-00037, 00038); `link_groups`: number of groups.
     `pitch_tolerance`: ratio by which F / S of G63 may differ from a programmed pitch (P-CHAN-90020).
+    `c_axis`: name of the main spindle as the last axis of the path, "" if it does not become one (P-CHAN-00010);
+    `face_kind`: kind of machine for #FACE (P-CHAN-00008).
     """
 
     spindles: tuple[Spindle, ...]
@@ -207,6 +209,8 @@ class SpindleTable(NamedTuple):
     default_link: Pairs = ()
     link_groups: int = 4
     pitch_tolerance: float = 0.001
+    c_axis: str = ""
+    face_kind: int = 0
 
 
 class NcBlock(NamedTuple):
@@ -429,7 +433,7 @@ class ModalState:
     `coordinates` amount to; while the tool radius is compensated both are points of the contour. `reported`: the
     canonical stream has them. `transition`: between blocks; `once`: at the end of the active one instead; `contour`:
     what G261 means. While a block is resolved: `following`, its further motions; `machine_words`, its axis words are
-    machine positions (G53 of the vocabulary iso).
+    machine positions (G53 of the vocabulary iso). `c_axis`: key of the spindle that #CAX has made an axis of the path.
     """
 
     position: tuple[float, ...] = ()
@@ -451,6 +455,7 @@ class ModalState:
     drilling: Drilling = NO_DRILLING
     tapping: Tapping = NO_TAPPING
     turning: Turning = NO_TURNING
+    c_axis: str = ""
     transition: Transition = THROUGH
     once: Transition | None = None
     contour: Contour = DEFAULT_CONTOUR

@@ -48,6 +48,7 @@ def can_follow(motion: Path, following: Path) -> bool:
         return False
     alike = motion.full_override == following.full_override and motion.slope == following.slope
     blended = motion.transition.contour is not None or is_rapid(motion) == is_rapid(following)
+    alike = alike and motion.kinematics == following.kinematics
     return alike and blended and not motion.transition.stops and not taps(following) and turns_alike(motion, following)
 
 
@@ -96,16 +97,24 @@ class LinkedPath:
         self._feeds: deque[float] = deque()
         self._rows: deque[MotionState] = deque()
 
-    def begin(self, first: LinkedMotion, motion: Path, following: Path) -> bool:
-        """Links the first two motions; False if they cannot be linked."""
+    def begin(self, first: LinkedMotion, motion: Path, following: Path | None, position: Sequence[float]) -> bool:
+        """Links the first two motions; False if they cannot be linked. `position` of the axes at the start.
+
+        With kinematics the first one may be the only one.
+        """
         self._last = motion
-        start = first.span.element.evaluate(0.0, 0.0, 0.0, 0.0)
-        self._at_start = tuple([(position, 0.0, 0.0, 0.0) for position, _, _, _ in start])
+        self._at_start = tuple([(value, 0.0, 0.0, 0.0) for value in position])
         """Of the axes, while too little of the path is known for its first part."""
         self._feeds.append(first.shown)
         self._builder.begin()
         self._append(self._builder.add(first))
-        return self._extend(following)
+        if following is not None and self._extend(following):
+            return True
+        if first.kinematics is None:
+            return False
+        self._append(self._builder.finish())
+        self.look_ahead.closed = True
+        return True
 
     @property
     def feed(self) -> float:
@@ -113,8 +122,8 @@ class LinkedPath:
 
     @property
     def target(self) -> tuple[float, ...]:
-        """End of the last block."""
-        return self._last.target
+        """End of the last block, for the axes of the machine."""
+        return self._last.target if self._last.kinematics is None else self._builder.reached
 
     @property
     def done(self) -> bool:
@@ -164,7 +173,10 @@ class LinkedPath:
                 continue
             begin, part = self.look_ahead.locate(u)
             states = part.geometry.evaluate(u - begin, v, a, j)
-            velocity = path_velocity(states, part.path_axes) or v  # other axes that move alone have a path of their own
+            if part.transformed:
+                velocity = v * (part.geometry.speed(u - begin, part.path_axes) or 1.0)
+            else:
+                velocity = path_velocity(states, part.path_axes) or v  # other axes alone have a path of their own
             if self._steps:
                 states = without_jerk(states)
             points.append((states, velocity, max(0.0, self._ends[0] - u)))

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
+from cnc_ptp.kinematics.kinematics import Kinematics
 from cnc_ptp.motion import Limits
 from cnc_ptp.motion.limits import check_limits
 from cnc_ptp.nc.canonical import STEP, Dwell, FeedPerTurn, LinearMove
@@ -16,11 +17,13 @@ from cnc_ptp.path.interpolator import LARGEST_OVERRIDE, PathInterpolator
 from cnc_ptp.path.linked_path import LinkedPath, MotionSource, Path, is_rapid, taps
 from cnc_ptp.path.lookahead.look_ahead import LookAhead
 from cnc_ptp.path.lookahead.path_builder import LinkedMotion, PathBuilder
+from cnc_ptp.path.lookahead.spans import whole
 from cnc_ptp.path.planner import PLANNERS, Planner
 from cnc_ptp.path.shape import AxisState, without_jerk
 from cnc_ptp.path.thread.retract import Retract
 from cnc_ptp.path.thread.thread_check import ThreadSettings, angle_of
 from cnc_ptp.path.thread.thread_path import ThreadPath
+from cnc_ptp.path.transformed_span import require_possible
 from cnc_ptp.protocol.blocks import CycleBlock
 
 CARTESIAN = ("X", "Y", "Z")
@@ -32,6 +35,8 @@ SpindleLimits = Callable[[str], AxisLimits]
 SpindleTurns = Callable[[str], float]
 """Turns per second of a spindle, by its name in programs."""
 AT_REST: AxisState = (0.0, 0.0, 0.0, 0.0)
+NO_LIMITS: Final = AxisLimits(1.0, 1.0, 1.0, 1.0)
+"""Of the C axis while the spindle is none: it does not move."""
 PathPoint = tuple[AxisStates, float, float]
 """One cycle on the path: the state of each axis, path velocity (mm/s), distance to the end of the element (mm)."""
 
@@ -74,7 +79,8 @@ class Plan(NamedTuple):
 class PathMotion:
     """Runs the motions of canonical blocks; between them the axes are at rest.
 
-    states           (position, velocity, acceleration, jerk) of each axis in the last cycle that was given out
+    states           (position, velocity, acceleration, jerk) of each axis in the last cycle that was given out; the C
+                     axis is the last one
     velocity         path velocity, mm/s
     distance_to_go   mm to the end of the element
     feed             programmed feed, mm/s; in rapid traverse the velocity that the axes allow
@@ -99,6 +105,9 @@ class PathMotion:
         self._cycle_time = cycle_time
         self._feed_limits = feed_limits(axes)
         self._rapid_limits = [AxisLimits(a.rapid_velocity, a.acceleration, a.deceleration, a.jerk) for a in axes]
+        if channel.c_axis:
+            self._feed_limits.append(NO_LIMITS)
+            self._rapid_limits.append(NO_LIMITS)
         self._path_axes = path_axes(channel)
         self._spindle_limits = spindle_limits
         self.spindle_states: list[AxisState] = []
@@ -110,6 +119,8 @@ class PathMotion:
         """Turns per second at which the path has the planned feed …"""
         self._turning_factor = 1.0
         """… and the real ones in relation to them."""
+        self._spindle_zero: float | None = None
+        """Position of the C axis where the path has taken the spindle over; None while it is none."""
         self._taps = False
         """The spindle is the last coordinate of the active element."""
         self._threads = thread_settings(channel, axes, cycle_time)
@@ -132,7 +143,7 @@ class PathMotion:
         """The thread that is active, in place of an element."""
         self._cycle = 0
         """The last one that was given out."""
-        self.states = standing([a.start_position for a in axes])
+        self.states = standing([a.start_position for a in axes] + ([0.0] if channel.c_axis else []))
         self.velocity = 0.0
         self.distance_to_go = 0.0
         self.feed = 0.0
@@ -286,11 +297,15 @@ class PathMotion:
         if isinstance(motion, LinearMove) and motion.thread is not None:
             self._start_thread(motion, motion.thread.spindle, source)
             return
-        plan = self.plan(motion, self.position)
+        kinematics = motion.kinematics
+        start = self.position if kinematics is None else kinematics.forward(self.position)
+        plan = self.plan(motion, start)
+        if kinematics is not None:
+            require_possible(whole(plan.element, 0), kinematics, self.position)
         element, feed = plan.element, plan.feed
         self._set_per_turn(motion)
         self._set_full_override(motion.full_override)
-        if source is not None and self._link(plan, motion, source):
+        if (source is not None or kinematics is not None) and self._link(plan, motion, source):
             return
         self._taps = taps(motion)
         self._interpolator.start(element, plan.limits, feed, planner=plan.planner)
@@ -344,6 +359,8 @@ class PathMotion:
         if isinstance(motion, LinearMove) and motion.thread is not None:
             return [angle_of(motion) / abs(motion.thread.speed) if motion.thread.speed else 0.0]
         plan = self.plan(motion, start)
+        if motion.kinematics is not None:
+            return [plan.duration]
         path = self._linked_path(plan, motion, source, LookAhead(1.0, 0.0, cell_time), 0.0)
         return [plan.duration] if path is None else path.durations()
 
@@ -351,6 +368,8 @@ class PathMotion:
         """How a motion from `start` is run on its own. Raises as `start`."""
         element, rapid, slope = self._make_element(start, motion), is_rapid(motion), motion.slope or self._default_slope
         axis_limits = self._rapid_limits if rapid else self._feed_limits
+        if motion.kinematics is not None:
+            axis_limits = programmed_limits(axis_limits, motion.kinematics)
         if isinstance(motion, LinearMove) and motion.tap is not None and self._spindle_limits is not None:
             axis_limits = [*axis_limits, self._spindle_limits(motion.tap.spindle)]
         if slope == STEP:
@@ -362,17 +381,21 @@ class PathMotion:
 
     def _make_element(self, start: tuple[float, ...], motion: Path) -> Line | Arc:
         if isinstance(motion, LinearMove):
-            line = Line(start, motion.target, self._path_axes)
+            line = Line(start, motion.target, self._feed_axes(motion))
             if motion.tap is None:
                 return line
             angle = self.spindle_state[0]
             travel = motion.tap.degrees_per_mm * line.length
             return Line((*start, angle), (*motion.target, angle + travel), self._path_axes)
         turn = (motion.center, motion.plane, motion.radius, motion.sweep)
-        return Arc(start, motion.target, *turn, self._path_axes, motion.directions)
+        return Arc(start, motion.target, *turn, self._feed_axes(motion), motion.directions)
 
-    def _link(self, plan: Plan, motion: Path, source: MotionSource) -> bool:
-        """Starts a path of several blocks if the next motion can be linked to this one."""
+    def _feed_axes(self, motion: Path) -> frozenset[int]:
+        """Those whose path the feed is for."""
+        return self._path_axes if motion.kinematics is None else self._path_axes.union(motion.kinematics.plane)
+
+    def _link(self, plan: Plan, motion: Path, source: MotionSource | None) -> bool:
+        """Starts a path of several blocks if the next motion can be linked to this one, and any with kinematics."""
         ahead = LookAhead(self._interpolator.override, self._interpolator.next_offset)
         path = self._linked_path(plan, motion, source, ahead, self._nominal_turns)
         if path is None:
@@ -381,15 +404,17 @@ class PathMotion:
         return True
 
     def _linked_path(
-        self, plan: Plan, motion: Path, source: MotionSource, ahead: LookAhead, turns: float
+        self, plan: Plan, motion: Path, source: MotionSource | None, ahead: LookAhead, turns: float
     ) -> LinkedPath | None:
         """`turns`: turns per second for which feeds per turn are planned; 0.0: those of each motion."""
-        following = None if motion.transition.stops else source.peek()
-        if following is None:
+        following = None if motion.transition.stops or source is None else source.peek()
+        if following is None and motion.kinematics is None:
             return None
-        builder = PathBuilder(sorted(self._path_axes), self._cycle_time)
-        path = LinkedPath(ahead, builder, source, partial(self._make_linked, turns), steps=plan.steps)
-        return path if path.begin(self._linked_motion(plan, motion, 0, turns), motion, following) else None
+        begin = plan.element.start if motion.kinematics is None else self.position
+        builder = PathBuilder(sorted(self._feed_axes(motion)), self._cycle_time, begin)
+        make = partial(self._make_linked, turns)
+        path = LinkedPath(ahead, builder, source or NOTHING_FOLLOWS, make, steps=plan.steps)
+        return path if path.begin(self._linked_motion(plan, motion, 0, turns), motion, following, begin) else None
 
     def _make_linked(self, turns: float, start: tuple[float, ...], motion: Path, block: int) -> LinkedMotion:
         plan = self.plan(motion, start)
@@ -403,11 +428,24 @@ class PathMotion:
         feed = math.inf if rapid else motion.feed
         if motion.per_turn is not None and turns:
             feed = motion.per_turn.feed * turns
-        return LinkedMotion(plan.element, limits, feed, block, motion.transition, plan.feed)
+        return LinkedMotion(plan.element, limits, feed, block, motion.transition, plan.feed, motion.kinematics)
 
     def take_spindle(self) -> None:
         """A spindle becomes an axis of the path: its travel counts from here."""
-        self.spindle_state = AT_REST
+        self.spindle_state, self._spindle_zero = AT_REST, None
+
+    def take_c_axis(self, angle: float, limits: AxisLimits) -> None:
+        """The spindle becomes the C axis where it stands (deg), with these limits (deg, s)."""
+        self._spindle_zero = angle
+        self._feed_limits[-1] = self._rapid_limits[-1] = limits
+        self.place(len(self.states) - 1, angle)
+
+    def spindle_travel(self, axes: AxisStates) -> AxisState:
+        """Of the spindle since the path has taken it over, in a cycle in which no tapping moves it."""
+        if self._spindle_zero is None:
+            return self.spindle_state
+        position, velocity, acceleration, jerk = axes[-1]
+        return position - self._spindle_zero, velocity, acceleration, jerk
 
     def follow(self, count: int) -> list[PathPoint]:
         """The next `count` cycles of the active motion; fewer when it ends before.
@@ -525,6 +563,29 @@ class PathMotion:
         override = self._interpolator.override
         self._interpolator = PathInterpolator()
         self._interpolator.set_override(override)
+
+
+def programmed_limits(axes: Sequence[AxisLimits], kinematics: Kinematics) -> list[AxisLimits]:
+    """What the programmed axes can do, roughly: for estimates, and for the feed that is shown in rapid traverse."""
+    limits = list(axes)
+    like, length = kinematics.likeness
+    limits[kinematics.plane[1]] = AxisLimits(*[value * length for value in axes[like]])
+    return limits
+
+
+class NoMotions:
+    """A MotionSource without any."""
+
+    busy = False
+
+    def peek(self) -> Path | None:
+        return None
+
+    def accept(self) -> None:
+        raise AssertionError("there is none")
+
+
+NOTHING_FOLLOWS: Final = NoMotions()
 
 
 def evaluation(element: Line | Arc, *, steps: bool) -> Evaluation:

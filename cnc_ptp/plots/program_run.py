@@ -160,6 +160,7 @@ def known_blocks(recorded: Recorded, machine: MachineParameters, name: str) -> K
         return None
     begin = tuple([position_at(axes[axis.node], start.cycle) for axis in channel.axes])
     check = ProgramCheck(channel, machine.axes, machine.spindles)
+    begin += check.start[len(begin) :]
     vocabulary = VOCABULARIES[values["dialect"]] if values.get("dialect") else check.vocabulary
     try:
         program = parse_program(values["text"], values["program"], files=values.get("files", {}), vocabulary=vocabulary)

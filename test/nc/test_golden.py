@@ -3,7 +3,7 @@
 import pytest
 from nc_support import HERE, files_of, machine, tools, turning_axes, vocabulary_of
 
-from cnc_ptp.nc import faults, spindle_faults, thread_faults, turning_faults
+from cnc_ptp.nc import c_axis_faults, faults, spindle_faults, thread_faults, turning_faults
 from cnc_ptp.nc.canonical_text import format_block
 from cnc_ptp.nc.coordinates import coordinate_faults
 from cnc_ptp.nc.expressions import expression_faults
@@ -31,6 +31,7 @@ PARTS = (
     iso_faults,
     faults,
     spindle_faults,
+    c_axis_faults,
     thread_faults,
     turning_faults,
     expression_faults,

@@ -217,3 +217,29 @@ WRONG = {
 @pytest.mark.parametrize(("lines", "text"), WRONG.values(), ids=WRONG)
 def test_refusal(lines: tuple[str, ...], text: str) -> None:
     assert refusal(*lines) == text + END
+
+
+def test_c_axis() -> None:
+    channel = machine(TWO, "default_ax_name_of_spindle: C\ncax_face_id: 2\nc_axis.ramp_time: 50").channels["ch"]
+    assert (channel.c_axis, channel.path_axes, channel.face_kind, channel.c_axis_ramp) == ("C", ("X", "C"), 2, 0.05)
+    assert machine(TWO).channels["ch"].path_axes == ("X",)
+
+
+def test_name_of_the_c_axis_is_that_of_another_axis() -> None:
+    assert refusal(TWO, "default_ax_name_of_spindle: X") == (
+        "P-ERR-25009 m.yaml:8:33: channel list, P-CHAN-00010 default_ax_name_of_spindle of /ch: value X is the name of an"
+        " axis of the channel (P-CHAN-00006)" + END
+    )
+
+
+def test_c_axis_without_a_spindle() -> None:
+    text = """/machine: {ros__parameters: {channels: [ch], axes: [x], spindles: []}}
+/ch: {ros__parameters: {default_ax_name_of_spindle: C}}
+/x: {ros__parameters: {kopf.achs_nr: 1}}
+"""
+    with pytest.raises(ParameterError) as caught:
+        load_machine(text, "m.yaml")
+    assert str(caught.value) == (
+        "P-ERR-25009 m.yaml:2:53: channel list, P-CHAN-00010 default_ax_name_of_spindle of /ch: value C, but the channel"
+        " has no spindle" + END
+    )

@@ -64,6 +64,8 @@ TABLES = {
     "plc": three_spindles(plc_control=True)._replace(gear_change=True),
     "limited": limited_spindles(),
     "unpositioned": three_spindles(positioned=False),
+    "c_axis": three_spindles()._replace(c_axis="C"),
+    "c_axis_milling": three_spindles()._replace(c_axis="C", face_kind=2),
     "linked": three_spindles()._replace(default_link=(Pair("S2", "S"),)),
     "wrongly_linked": three_spindles()._replace(default_link=(Pair("S", "S2"),)),
 }

@@ -10,7 +10,7 @@ from types import ModuleType
 from typing import Final
 
 from cnc_ptp import yaml_text
-from cnc_ptp.nc import faults, spindle_faults, thread_faults, turning_faults
+from cnc_ptp.nc import c_axis_faults, faults, spindle_faults, thread_faults, turning_faults
 from cnc_ptp.nc.coordinates import coordinate_faults
 from cnc_ptp.nc.expressions import expression_faults
 from cnc_ptp.nc.expressions.readable import READABLE
@@ -21,7 +21,7 @@ from cnc_ptp.nc.tools import tool_faults
 
 PARTS: Final = (
     *(faults, flow_faults, expression_faults, coordinate_faults, spindle_faults, tool_faults),
-    *(radius_faults, thread_faults, turning_faults),
+    *(c_axis_faults, radius_faults, thread_faults, turning_faults),
 )
 READ_ONLY: Final = expression_faults.NOT_ASSIGNABLE.number
 

@@ -6,6 +6,7 @@ from abc import abstractmethod
 from collections.abc import Sequence
 from typing import Final
 
+from cnc_ptp.nc.c_axis_faults import NOT_WITH_KINEMATICS
 from cnc_ptp.nc.canonical import number
 from cnc_ptp.nc.coordinates import coordinate_faults as faults
 from cnc_ptp.nc.coordinates.coordinates import NO_OFFSETS, System, system_of
@@ -188,6 +189,9 @@ class MachineCoordinates(CoordinateCommand):
     def change(self, channel: Channel, state: ModalState, execution: Flow, line: Line) -> None:
         coordinates = state.coordinates
         require_same_system(state, line.source, self.column, "#MCS ON" if self.on else "#MCS OFF")
+        kinematics = coordinates.kinematics
+        if kinematics is not None:
+            raise NOT_WITH_KINEMATICS.at(line.source, self.column, word="#MCS", command=kinematics.name)
         if self.on == (coordinates.outside is not None):
             raise (faults.MACHINE_ON if self.on else faults.MACHINE_OFF).at(line.source, self.column)
         if self.on:

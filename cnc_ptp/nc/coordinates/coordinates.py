@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Final, NamedTuple
 
+from cnc_ptp.kinematics.kinematics import Kinematics
 from cnc_ptp.nc.coordinates.frame import (
     IDENTITY,
     Frame,
@@ -78,6 +79,8 @@ class Coordinates:
     clamp_index number of the clamp position
     limits      software limits of G98 and G99 by place of the axis: negative, positive
     outside     what was there before #MCS ON, None without it
+    kinematics  between programmed positions and these of the axes (#FACE, #CYL), behind all of this
+    untransformed  the coordinates from before it
     suspended   offset that G92.2 has switched off (vocabulary iso)
     """
 
@@ -98,6 +101,8 @@ class Coordinates:
     clamp_index: int = 0
     limits: dict[int, tuple[float, float]] | None = None
     outside: "Coordinates | None" = None
+    kinematics: Kinematics | None = None
+    untransformed: "Coordinates | None" = None
     suspended: Offsets = ()
 
     def copy(self) -> "Coordinates":

@@ -33,4 +33,5 @@ def offset_report(channel: Channel, state: ModalState) -> OffsetReport:
         matrix=(*linear[0], *linear[1], *linear[2]),
         shift=zeros if frame is None else frame.shift,
         diameter=diameter.place if diameter is not None and channel.turning.shown else -1,
+        kinematics=coordinates.kinematics,
     )

@@ -102,6 +102,19 @@ def used_twice(entry: ChannelAxisEntry, names: dict[str, ChannelAxisEntry]) -> s
     return ""
 
 
+def c_axis_name(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
+    """The C axis has a name of its own, and a spindle."""
+    name = channel.text(ids.DEFAULT_AX_NAME_OF_SPINDLE)
+    if not name:
+        return
+    if any(entry.name == name for entry in axis_entries(channel, sets)):
+        text = f"value {name} is the name of an axis of the channel (P-CHAN-00006)"
+        yield problem(channel, errors.CONTRADICTION, ids.DEFAULT_AX_NAME_OF_SPINDLE, (), text)
+    elif not spindle_entries(channel, sets):
+        text = f"value {name}, but the channel has no spindle"
+        yield problem(channel, errors.CONTRADICTION, ids.DEFAULT_AX_NAME_OF_SPINDLE, (), text)
+
+
 def axis_count(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
     for group in channel.used_indexes("gruppe"):
         count = len(channel.used_indexes(f"gruppe.{group}.achse"))
@@ -136,6 +149,7 @@ CHANNEL_CHECKS = (
     axis_count,
     spindle_count,
     main_spindle,
+    c_axis_name,
     *SPINDLE_LIST_CHECKS,
     *OFFSET_CHECKS,
 )

@@ -211,6 +211,7 @@ THREAD_RETRACT_DISTANCE = "P-CHAN-90027"  # thread.retract_distance
 TOOL_RADIUS_LOOK_AHEAD = "P-CHAN-90035"  # tool_radius.look_ahead
 TOOL_RADIUS_OTHER_BLOCKS = "P-CHAN-90036"  # tool_radius.other_blocks
 PROG_START_OUTER_CORNERS = "P-CHAN-90037"  # prog_start.outer_corners
+C_AXIS_RAMP_TIME = "P-CHAN-90045"  # c_axis.ramp_time
 
 # startup list
 WERKZ_DATA = "P-STUP-00010"  # werkz_data

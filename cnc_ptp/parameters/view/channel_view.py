@@ -138,6 +138,17 @@ class ChannelParameters:
     """… and blocks without motion in the plane between two of them."""
     outer_corners: Annotated[int, ids.PROG_START_OUTER_CORNERS] = 26
     """G function of outer corners at the start of programs."""
+    c_axis: str = ""
+    """Program name of the main spindle as an axis of the path; empty: it does not become one (P-CHAN-00010)."""
+    face_kind: Annotated[int, ids.CAX_FACE_ID] = 0
+    """Kind of machine for #FACE: 2, X may pass the centre of rotation."""
+    c_axis_ramp: Annotated[float, ids.C_AXIS_RAMP_TIME] = 0.02
+    """s in which the spindle builds up its acceleration as an axis of the path."""
+
+    @property
+    def path_axes(self) -> tuple[str, ...]:
+        """Names of the axes of the path: those of the channel, then the C axis."""
+        return (*[axis.name for axis in self.axes], *([self.c_axis] if self.c_axis else []))
 
 
 def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet], folder: Path) -> ChannelParameters:
@@ -145,6 +156,7 @@ def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet], folder
     spindles = spindle_entries(channel, sets)
     axes = axis_entries(channel, sets)
     main = main_spindle_number(channel, spindles)
+    c_axis = channel.text(ids.DEFAULT_AX_NAME_OF_SPINDLE) if spindles else ""
     return ChannelParameters(
         name=channel.node,
         axes=tuple(ChannelAxis(entry.name, str(entry.node)) for entry in axes),
@@ -158,8 +170,9 @@ def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet], folder
         dialect=channel.text(ids.INTERPRETER_DIALECT),
         tool_table=tool_table(channel, sets),
         slope={0: "STEP", 2: "SIN2"}.get(int(channel.number(ids.SLOPE_PROFILE)), "TRAPEZ"),
-        offsets=offset_tables(channel, len(axes)),
+        offsets=offset_tables(channel, len(axes) + bool(c_axis)),
         cycles=cycles(channel),
+        c_axis=c_axis,
         pitch_tolerance=channel.number(ids.TAPPING_PITCH_TOLERANCE) / 1000.0,
         thread_retract_axis=channel.text(ids.THREAD_RETRACT_AXIS),
         folders=tuple(str(folder / name) for name in channel.names(ids.INTERPRETER_FOLDERS)),

@@ -22,11 +22,13 @@ from collections.abc import Sequence
 from math import asin, cbrt, degrees, inf, pi, sqrt
 from typing import Final
 
+from cnc_ptp.kinematics.kinematics import Kinematics, Point
 from cnc_ptp.nc.contour import DIST, Contour
 from cnc_ptp.path.cubic import Cubic
 from cnc_ptp.path.geometry import NEGLIGIBLE_MM, Arc, AxisLimits, Line
 from cnc_ptp.path.lookahead.spans import Curve, Span, whole
 from cnc_ptp.path.shape import Shape
+from cnc_ptp.path.transformed_span import positions
 
 Parts = tuple[float, float, float, float]
 """c1 … c4, or these times what they belong to."""
@@ -78,14 +80,26 @@ def corner(a: Span, b: Span, contour: Contour, path_axes: Sequence[int]) -> Corn
     return first, [whole(piece, b.block if index else a.block) for index, piece in enumerate(pieces)], last
 
 
-def kink_square(a: Span, b: Span, limits: Sequence[AxisLimits], cycle_time: float) -> float:
+def kink_square(
+    a: Span,
+    b: Span,
+    limits: Sequence[AxisLimits],
+    cycle_time: float,
+    kinematics: Kinematics | None = None,
+    near: Point = (),
+) -> float:
     """Largest y = u'² at which the corner from A to B can be passed as it is; inf where nothing jumps.
+
+    `kinematics`: A and B are Cartesian, and `near` is a machine position beside them.
 
     A jump of the velocity of an axis within one cycle T takes the jerk Δv/T² and the acceleration Δv/T, one of its
     acceleration the jerk Δa/T. Together they may take half the jerk of the axis: |Δq1|·u' <= J·T²/2 or
     |Δq2|·u'² <= J·T/2; and half its acceleration: |Δq1|·u' <= A·T/2. `quiet_limits` leaves that free beside the kink.
     """
     end, start = a.shape(a.length), b.shape(0.0)
+    if kinematics is not None:
+        end = kinematics.shape(end, near)
+        start = kinematics.shape(start, positions(end))
     square = inf
     for kink, bend, axis in zip(direction_jumps(end, start), curvature_jumps(end, start), limits, strict=True):
         share = 0.5 * KINK_SHARE if kink and bend else KINK_SHARE

@@ -32,6 +32,8 @@ class Geometry(Protocol):
 
     def bounds(self, begin: float, end: float) -> list[Bounds]: ...
 
+    def speed(self, u: float, axes: Sequence[int]) -> float: ...
+
     def largest_speed(self, begin: float, end: float, axes: Sequence[int]) -> float: ...
 
     def evaluate(self, u: float, v: float, a: float, j: float) -> tuple[AxisState, ...]: ...
@@ -44,10 +46,13 @@ class PathPart:
     feed   mm/s at override 1; inf in rapid traverse, where the override acts on what the axes permit
     block  number of the program block within the path, from 0
     entry  largest y = u'² at its start; 0 is an exact stop
+    transformed  its geometry is that of axes behind kinematics, one of them in degrees
     quiet  mm at its start and at its end in which kinks that are passed need a share of what the axes permit
     """
 
-    __slots__ = ("axes", "block", "entry", "feed", "geometry", "length", "path_axes", "quiet", "quiet_axes")
+    __slots__ = (
+        "axes", "block", "entry", "feed", "geometry", "length", "path_axes", "quiet", "quiet_axes", "transformed",
+    )  # fmt: skip
 
     def __init__(
         self,
@@ -59,11 +64,14 @@ class PathPart:
         entry: float = inf,
         quiet: tuple[float, float] = (0.0, 0.0),
         quiet_axes: Sequence[AxisLimits] = (),
+        *,
+        transformed: bool = False,
     ) -> None:
         """`quiet_axes`: limits there."""
         self.geometry, self.axes, self.path_axes = geometry, axes, path_axes
         self.feed, self.block, self.entry = feed, block, entry
         self.length = geometry.length
+        self.transformed = transformed
         self.quiet, self.quiet_axes = quiet, quiet_axes
 
     def limits(self, begin: float, end: float) -> Sequence[AxisLimits]:

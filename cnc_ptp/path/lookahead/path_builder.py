@@ -10,12 +10,15 @@ from collections.abc import Sequence
 from math import inf, sqrt
 from typing import Final
 
+from cnc_ptp.errors import CncError
+from cnc_ptp.kinematics.kinematics import Kinematics, Point
 from cnc_ptp.nc.contour import Transition
 from cnc_ptp.path.geometry import AxisLimits, Line
 from cnc_ptp.path.lookahead.corners import Corner, corner, kink_square, quiet_limits
-from cnc_ptp.path.lookahead.parts import PathPart
+from cnc_ptp.path.lookahead.parts import Geometry, PathPart
 from cnc_ptp.path.lookahead.smoothing import Smoother
 from cnc_ptp.path.lookahead.spans import Curve, Span, whole
+from cnc_ptp.path.transformed_span import divided, positions, require_possible
 
 SLOWEST: Final = 1.0
 """mm/s; a corner that could only be passed more slowly is an exact stop."""
@@ -26,10 +29,11 @@ KINK_CYCLES: Final = 3.0
 class LinkedMotion:
     """A motion of the path: its element, the limits of the axes and the feed (mm/s, inf in rapid traverse).
 
-    `shown`: the feed, in rapid traverse the velocity that the axes allow.
+    `shown`: the feed, in rapid traverse the velocity that the axes allow; `kinematics`: the element is Cartesian, and
+    these are the axes.
     """
 
-    __slots__ = ("axes", "block", "feed", "shown", "span", "transition")
+    __slots__ = ("axes", "block", "feed", "kinematics", "shown", "span", "transition")
 
     def __init__(
         self,
@@ -39,7 +43,9 @@ class LinkedMotion:
         block: int,
         transition: Transition,
         shown: float = inf,
+        kinematics: Kinematics | None = None,
     ) -> None:
+        self.kinematics = kinematics
         self.span = whole(element, block)
         self.axes, self.feed, self.block = axes, feed, block
         self.shown = shown
@@ -49,9 +55,11 @@ class LinkedMotion:
 class PathBuilder:
     """Makes parts of motions that follow each other."""
 
-    def __init__(self, path_axes: Sequence[int], cycle_time: float) -> None:
-        """`path_axes`: those whose path the feed is for; `cycle_time` in s."""
+    def __init__(self, path_axes: Sequence[int], cycle_time: float, start: Point = ()) -> None:
+        """`path_axes`: those whose path the feed is for; `cycle_time` in s; `start`: machine position at the start."""
         self._path_axes, self._cycle_time = path_axes, cycle_time
+        self.reached = start
+        """Machine position at the end of the parts that are known, with kinematics."""
         self._last: LinkedMotion | None = None
         self._entry = inf
         """y with which the last motion may be entered."""
@@ -75,7 +83,19 @@ class PathBuilder:
         """False if the path has to stop before `motion`, whatever its velocity."""
         if self._smoother is not None or motion.transition.smoothing is not None or self._last is None:
             return True  # where a smooth curve begins and ends is known later; it may stop there
-        return self._join(self._last, motion)[1] > 0.0
+        return self._possible(self._last, motion) and self._join(self._last, motion)[1] > 0.0
+
+    def _possible(self, last: LinkedMotion, motion: LinkedMotion) -> bool:
+        """The axes behind a kinematics can run `motion` from where `last` leaves them."""
+        kinematics = motion.kinematics
+        if kinematics is None:
+            return True
+        end = positions(kinematics.shape(last.span.shape(last.span.length), self.reached))
+        try:
+            require_possible(motion.span, kinematics, end)
+        except CncError:
+            return False  # reported when the path gets there
+        return True
 
     def add(self, motion: LinkedMotion) -> list[PathPart]:
         """The parts that are known once `motion` follows."""
@@ -84,7 +104,7 @@ class PathBuilder:
         if self._smoother is not None and (before is None or not smoothed_together(before, motion)):
             parts = self._end_of_curve()
         smoothing, element = motion.transition.smoothing, motion.span.element
-        if smoothing is None or motion.feed == inf or not isinstance(element, Line):
+        if smoothing is None or motion.feed == inf or motion.kinematics is not None or not isinstance(element, Line):
             return parts + self._link(motion)
         if self._smoother is None:
             self._smoother = Smoother(element.start, self._path_axes, smoothing.path_dev, smoothing.track_dev)
@@ -97,7 +117,7 @@ class PathBuilder:
         parts = self._end_of_curve()
         last, self._last = self._last, None
         if last is not None and last.span.length > 0.0:
-            parts.append(self._part(last, last.span))
+            parts += self._parts(last, last.span)
         return parts
 
     def _end_of_curve(self) -> list[PathPart]:
@@ -126,33 +146,61 @@ class PathBuilder:
         if made is not None:
             before, curve, motion.span = made
             spans = [before, *curve] if before.length > 0.0 else curve
-            parts = [self._part(last if span.block == last.block else motion, span) for span in spans]
-            if curve:
-                parts[-2].feed = min(last.feed, motion.feed)  # the corner is within the middle piece
-            return parts
+            of_spans = [self._parts(last if span.block == last.block else motion, span) for span in spans]
+            for part in of_spans[-2] if curve else ():
+                part.feed = min(last.feed, motion.feed)  # the corner is within the middle piece
+            return [part for parts in of_spans for part in parts]
         quiet = KINK_CYCLES * self._cycle_time * sqrt(square) if square < inf else 0.0
-        part = self._part(last, last.span, quiet)
+        parts = self._parts(last, last.span, quiet)
         self._entry, self._quiet = square, quiet
-        return [part] if part.length > 0.0 else []
+        return parts
 
     def _join(self, last: LinkedMotion, motion: LinkedMotion) -> tuple[Corner | None, float]:
         """The curve between two motions, or else the y with which the kink can be passed; 0 is an exact stop."""
         contour = last.transition.contour
         made = None if contour is None else corner(last.span, motion.span, contour, self._path_axes)
-        if made is not None:
+        if made is not None and self._passable(made, motion.kinematics):
             return made, inf
-        square = kink_square(last.span, motion.span, narrower(last.axes, motion.axes), self._cycle_time)
+        limits = narrower(last.axes, motion.axes)
+        square = kink_square(last.span, motion.span, limits, self._cycle_time, motion.kinematics, self.reached)
         if square < inf:
             alone = min(last.span.length, motion.span.length) / (KINK_CYCLES * self._cycle_time)
             square = min(square, alone * alone)
         return None, square if square >= SLOWEST * SLOWEST else 0.0
 
-    def _part(self, motion: LinkedMotion, span: Span, quiet: float = 0.0) -> PathPart:
-        """`quiet`: mm at its end that are near a kink."""
+    def _passable(self, made: Corner, kinematics: Kinematics | None) -> bool:
+        """The axes of the machine have a position everywhere on the curve."""
+        if kinematics is None:
+            return True
+        try:
+            for piece in made[1]:
+                divided(piece, kinematics, self.reached)
+        except CncError:
+            return False
+        return True
+
+    def _parts(self, motion: LinkedMotion, span: Span, quiet: float = 0.0) -> list[PathPart]:
+        """One, with kinematics several; none without length. `quiet`: mm at its end that are near a kink."""
         entry, self._entry = self._entry, inf
-        near, self._quiet = (self._quiet, quiet), 0.0
-        axes = quiet_limits(motion.axes, self._cycle_time) if near != (0.0, 0.0) else ()
-        return PathPart(span, motion.axes, self._path_axes, motion.feed, span.block, entry, near, axes)
+        (before, behind), self._quiet = (self._quiet, quiet), 0.0
+        if span.length <= 0.0:
+            return []
+        axes = quiet_limits(motion.axes, self._cycle_time) if before or behind else ()
+        pieces: Sequence[Geometry] = [span]
+        if motion.kinematics is not None:
+            pieces, self.reached = divided(span, motion.kinematics, self.reached)
+        parts: list[PathPart] = []
+        place = 0.0
+        for piece in pieces:
+            left = span.length - place - piece.length
+            near = max(0.0, before - place), max(0.0, behind - left)
+            part = PathPart(
+                piece, motion.axes, self._path_axes, motion.feed, span.block, entry, near, axes,
+                transformed=motion.kinematics is not None,
+            )  # fmt: skip
+            parts.append(part)
+            entry, place = inf, place + piece.length
+        return parts
 
 
 def smoothed_together(motion: LinkedMotion, following: LinkedMotion) -> bool:

@@ -1,0 +1,6 @@
+; P-ERR-21751 face_syntax.nc line 5 column 1 '#FACE [X]': it is written #FACE [X, C], with the facing axis and the C axis, or #FACE OFF
+; machine X Z C / c_axis
+#CAX
+G00 X20 C0
+#FACE [X]
+M30

@@ -1,0 +1,7 @@
+; P-ERR-21755 face_through_centre.nc line 6 column 1 'G01 X-20 F1000': the path of #FACE [X, C] goes through the centre of rotation, where the C axis has no angle (P-CHAN-00008)
+; machine X Z C / c_axis
+#CAX
+G00 X20 C0
+#FACE [X, C]
+G01 X-20 F1000
+M30

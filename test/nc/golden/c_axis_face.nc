@@ -1,0 +1,15 @@
+; machine X Z C / c_axis
+; Cartesian on the face and on the cylinder, one directly after the other
+N10 #CAX
+N20 G00 X20 C90 Z5
+N30 G92 C-90
+N40 #FACE [X, C]
+N50 G01 X10 C10 F1000
+N60 G91 C-5 Z-1
+N70 G90 G03 X10 C15 I0 J5
+N80 #CYL [Z, C, X20]
+N90 G01 Z10 C6.2831853 F500
+N95 G02 Z20 C6.2831853 I5 J0
+N97 #CYL OFF
+N98 G01 C0
+N99 M30
