@@ -92,7 +92,7 @@ def end(channel: Channel, state: ModalState, block: NcBlock, command: HashComman
 
 
 def check_words(channel: Channel, state: ModalState, block: NcBlock, path: GCode) -> None:
-    """Raises ProgramError for words of the C axis while the spindle is none, for G74 of it, for threads and G96 beside it."""
+    """Raises ProgramError for words of the C axis without #CAX, for G74 of it, for threads and G96 beside it."""
     axis, column = channel.table.c_axis, block.source.column
     if axis in block.words:
         if path.number == HOMING:

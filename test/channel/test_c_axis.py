@@ -130,9 +130,9 @@ def test_homes_before_without_a_reference() -> None:
 def test_no_reference_and_no_automatic_homing() -> None:
     spindle = replace(LATHE.spindles["s"], referenced_at_start=False, automatic_homing=False)
     bench = run("#CAX\nM30\n", machine=replace(LATHE, spindles={"s": spindle}))
-    assert errors(bench) == [
-        "channel channel: spindle s has no reference point and does not home automatically (P-AXIS-00015 0x100); home it"
-        " before #CAX (G74 S1) in test.nc line 1 '#CAX'; the path stops on its ramp and the program is aborted"
+    assert bench.errors() == [
+        "P-ERR-22120 channel channel: spindle s has no reference point and does not home automatically (P-AXIS-00015"
+        " 0x100); home it before #CAX (G74 S1) in test.nc line 1 '#CAX'; the path stops on its ramp and the program is aborted"
     ]
 
 
