@@ -103,7 +103,7 @@ def check_words(channel: Channel, state: ModalState, block: NcBlock, path: GCode
     if controlled or any(isinstance(each, CompensationSwitch) and each.axis == axis for each in block.controls):
         spindle = channel.table.main_name
         raise own.C_AXIS_CONTROL.at(block.source, column(axis), axis=axis, spindle=spindle)
-    if state.c_axis and path.number in (*tapping.CODES, *THREADS):
+    if state.c_axis and (path.number in tapping.CODES or path.number in THREADS):
         raise _taken(channel, state, block, path.name)
     if state.c_axis and any(code.number == turning.CONSTANT for code in block.codes):
         raise _taken(channel, state, block, f"G{turning.CONSTANT}")

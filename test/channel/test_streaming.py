@@ -317,7 +317,7 @@ def test_a_file_that_vanishes_or_changes_behind_the_load_has_no_effect(tmp_path:
     assert str(caught.value) == (
         f"P-ERR-26110 NC program {file} cannot be read: No such file or directory; nothing was started"
     )
-    file.write_bytes(b"\xff\xfe")
+    file.write_bytes(b"X1 \xff\xfe")
     with pytest.raises(
         CncError, match=r"P-ERR-26110 .* cannot be read: it is not UTF-8 text, byte .* nothing was started"
     ):

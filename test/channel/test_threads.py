@@ -208,8 +208,8 @@ def test_override_0_of_the_spindle_lets_the_thread_wait_before_it_begins():
 
 # what breaks a thread off
 
-HELD = "51109 channel channel: spindle s is held by override 0 within a thread (G33) in line 4 'G33 Z48 K1.5'"
-STOPPING = "51109 channel channel: spindle s is in Stopping within a thread (G33) in line 4 'G33 Z48 K1.5'"
+HELD = "51109 channel channel: spindle s is held by override 0 within a thread (G33) in test.nc line 4 'G33 Z48 K1.5'"
+STOPPING = "51109 channel channel: spindle s is in Stopping within a thread (G33) in test.nc line 4 'G33 Z48 K1.5'"
 FAILED = "22012 channel channel: s is in error P-ERR-24011"
 RESET = "22087 channel channel: reset within a thread"
 RETRACTS = "axis X retracts by 5 mm while the path follows spindle s, then the path stops"
@@ -286,19 +286,19 @@ NOT_BEGUN = "the thread is not begun and the program is aborted"
             "G33 Z104.9 K1.5",
             LATHE,
             "22083 channel channel: block 1 of the thread is 0.183 mm too short at 400 rpm: run-up 0.141 mm and"
-            " run-out 0.141 mm need more than its 0.100 mm in line 4 'G33 Z104.9 K1.5'",
+            " run-out 0.141 mm need more than its 0.100 mm in test.nc line 4 'G33 Z104.9 K1.5'",
         ),
         (
             "G33 Z100 K1.5\nZ99.99 K3\nZ90 K1.5",
             LATHE,
             "22083 channel channel: block 2 of the thread is 1.079 mm too short at 400 rpm: joint 0.544 mm and"
-            " joint 0.544 mm need more than its 0.010 mm in line 4 'G33 Z100 K1.5'",
+            " joint 0.544 mm need more than its 0.010 mm in test.nc line 4 'G33 Z100 K1.5'",
         ),
         (
             "G33 Z48 K3",
             lathe(thread_run_up=0.3),
             "22084 channel channel: the run-up of the thread takes 0.400 mm, 0.100 mm more than the 0.3 mm in which"
-            " it may be out of pitch (P-CHAN-90025) in line 4 'G33 Z48 K3'",
+            " it may be out of pitch (P-CHAN-90025) in test.nc line 4 'G33 Z48 K3'",
         ),
     ],
 )
@@ -310,7 +310,7 @@ def test_a_thread_without_room_is_not_begun(text, machine, error):
 
 def test_a_spindle_that_nobody_has_started():
     bench = cut(THREAD, head=HEAD.replace(" M03 S400", ""))
-    reason = "spindle s does not turn for the thread (G33), it is in Standstill in line 4 'G33 Z48 K1.5'"
+    reason = "spindle s does not turn for the thread (G33), it is in Standstill in test.nc line 4 'G33 Z48 K1.5'"
     assert texts(bench) == [f"22080 channel channel: {reason}; {NOT_BEGUN}"]
 
 
@@ -324,7 +324,9 @@ def test_a_spindle_of_the_plc_that_is_too_fast():
     scenario = "- {at: 0, to: s, do: start, speed_rpm: 3000, direction: cw}"
     bench = cut("G33 Z48 K20", scenario, head=HEAD.replace(" M03 S400", "") + "G04 1\n")
     reason = "a thread with 20 mm per revolution at 3000 rpm needs 1000 mm/s of axis Z, its limit is 400 mm/s"
-    assert texts(bench) == [f"22082 channel channel: {reason} (P-AXIS-00212) in line 5 'G33 Z48 K20'; {NOT_BEGUN}"]
+    assert texts(bench) == [
+        f"22082 channel channel: {reason} (P-AXIS-00212) in test.nc line 5 'G33 Z48 K20'; {NOT_BEGUN}"
+    ]
 
 
 def refusal(text: str, machine=LATHE) -> str:
@@ -392,4 +394,4 @@ def test_a_chain_with_leads_that_change():
 def test_a_lead_that_changes_too_fast():
     bench = cut("G34 Z95 K2 F6", head=HEAD.replace("S400", "S1500"))
     change = "a lead that changes by 6 mm per revolution at 1500 rpm needs 3750 mm/s² of axis Z, it may take 600 mm/s²"
-    assert texts(bench) == [f"22088 channel channel: {change} in line 4 'G34 Z95 K2 F6'; {NOT_BEGUN}"]
+    assert texts(bench) == [f"22088 channel channel: {change} in test.nc line 4 'G34 Z95 K2 F6'; {NOT_BEGUN}"]

@@ -85,9 +85,9 @@ def test_axis_that_the_machine_does_not_have(tmp_path):
 
 
 def test_machine_that_does_not_exist(tmp_path):
-    text = fault_of(written(tmp_path, {**HEAD, "machine": "config/lathe.yaml"}))
+    text = fault_of(written(tmp_path, {**HEAD, "machine": "config/no_such_machine.yaml"}))
     assert text.startswith("figure move.yaml: P-ERR-")
-    assert "config/lathe.yaml" in text
+    assert "config/no_such_machine.yaml" in text
 
 
 def test_scenario_with_an_unknown_command(tmp_path):
