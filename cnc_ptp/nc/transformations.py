@@ -206,5 +206,5 @@ def _require_c_axis(state: ModalState, block: NcBlock, command: HashCommand) -> 
         raise _fault(own.KINEMATICS_WITHOUT_CAX, block, command, command=f"#{command.name}")
 
 
-def _fault(fault: Fault, block: NcBlock, command: HashCommand, /, **values: Value) -> ProgramError:
-    return fault.at(block.source, command.column, **values)
+def _fault(fault: Fault, block: NcBlock, line: HashCommand, /, **values: Value) -> ProgramError:
+    return fault.at(block.source, line.column, **values)
