@@ -16,7 +16,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.motion.limits import LARGEST_STATE, OUT_OF_RANGE
 from cnc_ptp.motion.setpoints import Setpoints
 from cnc_ptp.parameters import AxisParameters
-from cnc_ptp.path.path_motion import begins_element
+from cnc_ptp.path.geometry import begins_element
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import StatusBit, state_name
 from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, CycleBlock

@@ -38,7 +38,9 @@ from cnc_ptp.nc.vocabularies import VOCABULARIES
 from cnc_ptp.nc.vocabulary import MAX_SKIP_LEVEL
 from cnc_ptp.parameters import AxisParameters, ChannelParameters, SpindleParameters
 from cnc_ptp.parameters.view.homing_view import IGNORE_ABSOLUTE
-from cnc_ptp.path.path_motion import PathMotion, PathPoint, begins_element
+from cnc_ptp.path.active_motion import PathPoint
+from cnc_ptp.path.geometry import begins_element
+from cnc_ptp.path.path_motion import PathMotion
 from cnc_ptp.path.shape import AxisState
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
 from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, Command, CycleBlock, CycleTick, Severity, SpindleBlock

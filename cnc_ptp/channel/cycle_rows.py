@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from cnc_ptp.path.path_motion import AxisStates
-from cnc_ptp.path.shape import AxisState
+from cnc_ptp.path.shape import AxisState, AxisStates
 
 
 class CycleRows:

@@ -10,7 +10,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from cnc_ptp.parameters import AxisParameters
-from cnc_ptp.path.path_motion import AxisStates, PathMotion
+from cnc_ptp.path.path_motion import PathMotion
+from cnc_ptp.path.shape import AxisStates
 from cnc_ptp.protocol.axis_states import AxisStateCode, StatusBit
 from cnc_ptp.protocol.blocks import AxisBlock, CycleBlock
 

@@ -1,7 +1,7 @@
 """The spindle that is an axis of the path for a while (TF5200 spindle 2.3.3, 2.8.6, 2.8.8).
 
-`ready` (G63) and `ready_as_axis` (#CAX) ask for it and are true when the spindle has reported that it follows: from
-that block on the channel gives it setpoints, in every cycle, until `release`.
+`ready` (G63, #CAX) asks for it and is true when the spindle has reported that it follows: from that block on the
+channel gives it setpoints, in every cycle, until `release`.
 """
 
 from __future__ import annotations
@@ -11,8 +11,18 @@ from math import inf
 from cnc_ptp.channel.commanded_spindle import CommandedSpindle
 from cnc_ptp.channel.spindle_functions import SpindleFunctions
 from cnc_ptp.errors import CncError
-from cnc_ptp.nc.canonical import SpindleCommand
+from cnc_ptp.nc.canonical import (
+    CanonicalBlock,
+    CircularMove,
+    HomeAxes,
+    LinearMove,
+    SpindleAxis,
+    SpindleCommand,
+    SpindleFunction,
+    SpindleLink,
+)
 from cnc_ptp.path.geometry import AxisLimits
+from cnc_ptp.path.path_motion import PathMotion
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.blocks import Command
 from cnc_ptp.protocol.spindle_states import SpindleBit
@@ -22,6 +32,7 @@ from cnc_ptp.spindle.tool_limits import SpindleLimits
 SPINDLE_TURNS = 22060
 SPINDLE_LEFT_PATH = 22061
 SPINDLE_NOT_REFERENCED = 22120
+MOVE_SPINDLES = (SpindleFunction, SpindleCommand, SpindleLink, SpindleAxis)
 
 
 class PathSpindle:
@@ -71,26 +82,51 @@ class PathSpindle:
         limits = self.limits(name)
         return limits._replace(jerk=max(limits.acceleration, limits.deceleration) / self._ramp_time)
 
-    def ready(self, name: str) -> bool:
-        """The spindle follows; it is asked to when it stands. Raises CncError 22060 for one that turns on its own."""
-        spindle = self._spindles[name]
-        if self._spindle is None and not spindle.pending and stands(spindle):
-            self._spindle, self._asked_in = spindle, None
-            self._send("follow_path")
-        return self.node == spindle.node
+    def taken_for(self, block: CanonicalBlock, path: PathMotion) -> bool:
+        """The path has the spindle that the block moves or makes its C axis, or needs none; it is asked for it.
 
-    def ready_as_axis(self, name: str) -> bool:
-        """The spindle is the C axis; it homes before if it has no reference point, and is asked to when it stands.
+        Raises CncError 22060 for one that turns on its own, 22120 for a C axis that does not home automatically.
+        """
+        motion = block.motion
+        if isinstance(motion, LinearMove) and motion.tap is not None:
+            asked = self.active
+            follows = self.ready(motion.tap.spindle)
+            if self.active and not asked:
+                path.take_spindle()
+            return follows
+        for function in block.functions:
+            if isinstance(function, SpindleAxis) and function.on:
+                if not self.ready(function.spindle, as_axis=True):
+                    return False
+                path.take_c_axis(self.angle, self.axis_limits(function.spindle))
+        return True
 
-        Raises CncError 22060 for one that turns, 22120 for one that does not home automatically.
+    def ready(self, name: str, *, as_axis: bool = False) -> bool:
+        """The spindle follows; it is asked to when it stands. The C axis homes before if it has no reference point.
+
+        Raises as `taken_for`.
         """
         spindle = self._spindles[name]
-        if self._spindle is None and not spindle.pending and stands(spindle, alone=True):
-            if not self._referenced(spindle):
+        if self._spindle is None and not spindle.pending and stands(spindle, alone=as_axis):
+            if as_axis and not self._referenced(spindle):
                 return False
-            self._spindle, self._asked_in, self.is_axis = spindle, None, True
+            self._spindle, self._asked_in, self.is_axis = spindle, None, as_axis
             self._send("follow_path")
         return self.node == spindle.node
+
+    def leave_before(self, block: CanonicalBlock) -> None:
+        """The spindle is released before a block that has another motion, or commands for spindles.
+
+        The C axis is released by #CAX OFF alone.
+        """
+        if self.is_axis:
+            leaves = any(isinstance(function, SpindleAxis) and not function.on for function in block.functions)
+        elif isinstance(block.motion, (LinearMove, CircularMove, HomeAxes)):
+            leaves = not (isinstance(block.motion, LinearMove) and block.motion.tap is not None)
+        else:
+            leaves = any(isinstance(function, MOVE_SPINDLES) for function in block.functions)
+        if leaves:
+            self.release()
 
     def _referenced(self, spindle: CommandedSpindle) -> bool:
         """It has a reference point; else it homes (P-AXIS-00015). Raises CncError 22120."""

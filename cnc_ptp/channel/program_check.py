@@ -63,8 +63,7 @@ from cnc_ptp.parameters import (
 )
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.parameters.view.homing_view import DISABLED
-from cnc_ptp.path.path_motion import thread_settings
-from cnc_ptp.path.thread.thread_check import require_velocity
+from cnc_ptp.path.thread.thread_check import require_velocity, thread_settings
 from cnc_ptp.path.thread.thread_geometry import slopes_and_bends
 from cnc_ptp.protocol.blocks import CycleBlock, SpindleBlock
 from cnc_ptp.spindle.faults import NO_POSITION_VALUE, SENSORLESS

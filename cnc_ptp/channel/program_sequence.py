@@ -43,11 +43,6 @@ from cnc_ptp.nc.canonical import (
     OffsetReport,
     OrderedError,
     Source,
-    SpindleAxis,
-    SpindleCommand,
-    SpindleFunction,
-    SpindleLink,
-    Tap,
     Timer,
     WaitForPath,
     led_by_spindle,
@@ -236,14 +231,6 @@ class ProgramSequence:
         else:
             self.motion_ended()
 
-    def _spindle_follows(self, tap: Tap) -> bool:
-        """The spindle is an axis of the path; it is asked to become one. Raises CncError 22060."""
-        spindle, asked = self._path_spindle, self._path_spindle.active
-        follows = spindle.ready(tap.spindle)
-        if spindle.active and not asked:
-            self._motion.take_spindle()
-        return follows
-
     @property
     def cuts(self) -> bool:
         """The path moves at a feed, in no thread."""
@@ -257,17 +244,6 @@ class ProgramSequence:
         for wait in self._waits:
             if wait.expected.condition is Condition.SPEED and wait.expected.spindle in spindles:
                 wait.expected = Expectation(wait.expected.spindle)
-
-    def _c_axis_taken(self) -> bool:
-        """The spindle of #CAX is an axis of the path, or the block has none. Raises CncError 22060, 22120."""
-        assert self._block is not None
-        for function in self._block.functions:
-            if isinstance(function, SpindleAxis) and function.on:
-                spindle = self._path_spindle
-                if not spindle.ready_as_axis(function.spindle):
-                    return False
-                self._motion.take_c_axis(spindle.angle, spindle.axis_limits(function.spindle))
-        return True
 
     def _stop_spindles(self) -> None:
         """M05 for the spindles that the channel has started, except those to keep; its couplings end."""
@@ -396,8 +372,8 @@ class ProgramSequence:
             return f"spindle {self._functions.spindles[self._motion.awaited_spindle].node} to turn (G95)"
         if self.phase is Phase.MOTION and self._motion.held and self._motion.velocity == 0.0:
             return "an override above 0, the end of the feed hold or a feed release"
-        if self.phase is Phase.MOTION and self._motion.thread is not None and self._motion.thread.waits_for:
-            return self._motion.thread.waits_for
+        if self.phase is Phase.MOTION and self._motion.waits_for:
+            return self._motion.waits_for
         if self.homing_held:
             return "an override above 0 or the end of the feed hold"
         waits = [wait.text(self.handshake) for wait in self._waited_for()]
@@ -499,8 +475,7 @@ class ProgramSequence:
             self._wait(Phase.WAIT_END, Moment.AFTER, *ALL_LATE)
             return True
         self._reach(block)
-        if leaves_spindle(block, is_axis=self._path_spindle.is_axis):
-            self._path_spindle.release()
+        self._path_spindle.leave_before(block)
         gear = self._functions.gear_change(block)
         if not gear.commands:
             self._functions_before(first_cycle, cycle)
@@ -552,16 +527,14 @@ class ProgramSequence:
         """False while the interpreter computes the block with which it is linked, while a spindle becomes an axis of
         the path, and while a measuring run waits for the next block: then all cycles before it have been reported.
         """
+        if self._block is not None and not self._path_spindle.taken_for(self._block, self._motion):
+            return False
         motion = self._block.motion if self._block else None
         if motion is None:
-            if self._block is not None and not self._c_axis_taken():
-                return False
             self.motion_ended()
         elif isinstance(motion, HomeAxes):
             self._homing.begin(motion.groups)
             self.phase = Phase.HOMING
-        elif isinstance(motion, LinearMove) and motion.tap is not None and not self._spindle_follows(motion.tap):
-            return False
         elif not (isinstance(motion, LinearMove) and motion.measures):
             self.starts_late = self._following.awaits_next(motion)
             if self.starts_late:
@@ -691,20 +664,6 @@ class ProgramSequence:
     def _add_waits(self, waits: Sequence[Wait]) -> None:
         """The list is in the order of the moments."""
         self._waits = sorted([*self._waits, *waits], key=lambda wait: ORDER[wait.until])
-
-
-def leaves_spindle(block: CanonicalBlock, *, is_axis: bool) -> bool:
-    """A spindle that the path moves is released before the block: it has another motion, or commands for spindles.
-
-    `is_axis`: it is the C axis, which only #CAX OFF ends.
-    """
-    if is_axis:
-        return any(isinstance(function, SpindleAxis) and not function.on for function in block.functions)
-    motion = block.motion
-    if isinstance(motion, (LinearMove, CircularMove, HomeAxes)):
-        return not (isinstance(motion, LinearMove) and motion.tap is not None)
-    moves_spindles = (SpindleFunction, SpindleCommand, SpindleLink, SpindleAxis)
-    return any(isinstance(function, moves_spindles) for function in block.functions)
 
 
 def actual_positions(feedback: Mapping[str, CycleBlock], axes: Sequence[str]) -> tuple[float, ...]:

@@ -19,7 +19,8 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, Dwell, HomeAxes, LinearMove
 from cnc_ptp.path.linked_path import can_follow, taps
 from cnc_ptp.path.lookahead.parts import CELL_TIME
-from cnc_ptp.path.path_motion import PathMotion, Plan
+from cnc_ptp.path.motion_plan import Plan
+from cnc_ptp.path.path_motion import PathMotion
 
 Motion = LinearMove | CircularMove | Dwell | HomeAxes
 BUDGET: Final = 10_000.0

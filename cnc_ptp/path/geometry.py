@@ -388,3 +388,8 @@ def _check_points(start: Sequence[float], target: Sequence[float]) -> None:
             if not isfinite(value):
                 reason = f"path {name} of axis {n} = {value!r} must be a finite number"
                 raise CncError(BAD_POINTS, reason, "the motion is refused", point=name, axis=n, value=value)
+
+
+def begins_element(before: float, now: float) -> bool:
+    """From the distances to go (mm) of two cycles: within an element they only decrease, but for rounding."""
+    return now > before + NEGLIGIBLE_MM

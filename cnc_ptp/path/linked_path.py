@@ -10,10 +10,12 @@ from typing import Final, Protocol
 from cnc_ptp.errors import CncError
 from cnc_ptp.motion.setpoints import MotionState
 from cnc_ptp.nc.canonical import CircularMove, LinearMove, led_by_spindle
+from cnc_ptp.path.active_motion import ActiveMotion, PathPoint
+from cnc_ptp.path.interpolator import PathInterpolator
 from cnc_ptp.path.lookahead.look_ahead import LookAhead
 from cnc_ptp.path.lookahead.parts import PathPart
 from cnc_ptp.path.lookahead.path_builder import LinkedMotion, PathBuilder
-from cnc_ptp.path.shape import AxisState, without_jerk
+from cnc_ptp.path.shape import AxisState, standing, without_jerk
 
 Path = LinearMove | CircularMove
 
@@ -32,8 +34,6 @@ class MotionSource(Protocol):
         """The motion that `peek` has shown belongs to the path now."""
 
 
-LinkedPoint = tuple[tuple[AxisState, ...], float, float]
-"""States of the axes, path velocity (mm/s), distance to the end of the block (mm)."""
 Maker = Callable[[tuple[float, ...], Path, int], LinkedMotion]
 """Makes an element of the position at which a motion begins, the motion and the number of its block."""
 
@@ -73,18 +73,26 @@ def path_velocity(states: Sequence[AxisState], axes: Sequence[int]) -> float:
     return sqrt(sum([states[axis][1] * states[axis][1] for axis in axes]))
 
 
-class LinkedPath:
+class LinkedPath(ActiveMotion):
     """Runs linked motions.
 
     block   number of the active block within the path, from 0
-    feed    programmed feed of the active block, mm/s; in rapid traverse the velocity that the axes allow
     """
 
     def __init__(
-        self, look_ahead: LookAhead, builder: PathBuilder, source: MotionSource, make: Maker, *, steps: bool
+        self,
+        look_ahead: LookAhead,
+        builder: PathBuilder,
+        source: MotionSource,
+        make: Maker,
+        cycle_time: float,
+        *,
+        steps: bool,
     ) -> None:
         """`steps`: the acceleration of the path may step, so no jerk is fed forward (P-AXIS-00337)."""
+        super().__init__()
         self.look_ahead = look_ahead
+        self._cycle_time = cycle_time
         self._steps = steps
         self._builder, self._source, self._make = builder, source, make
         self.block = 0
@@ -103,7 +111,7 @@ class LinkedPath:
         With kinematics the first one may be the only one.
         """
         self._last = motion
-        self._at_start = tuple([(value, 0.0, 0.0, 0.0) for value in position])
+        self._at_start = standing(position)
         """Of the axes, while too little of the path is known for its first part."""
         self._feeds.append(first.shown)
         self._builder.begin()
@@ -130,39 +138,71 @@ class LinkedPath:
         """All blocks are finished."""
         return self.look_ahead.done and not self._rows and self.block == self._blocks - 1
 
+    def end(self, position: tuple[float, ...]) -> tuple[float, ...]:
+        return self.target if self.done else position
+
+    def hand_over(self, interpolator: PathInterpolator) -> None:
+        interpolator.go_on(self.look_ahead.remaining_time - self._cycle_time if self.done else 0.0)
+
+    @property
+    def runs_through(self) -> bool:
+        return True
+
+    @property
+    def stopped(self) -> bool:
+        return self.look_ahead.stopped
+
+    def stop(self) -> None:
+        self.look_ahead.stop()
+
+    def set_override(self, override: float) -> None:
+        self.look_ahead.set_override(override)
+
+    @property
+    def can_be_held(self) -> bool:
+        return not self.look_ahead.brakes_for_end
+
+    def time_to_go(self, velocity: float, distance: float) -> float:
+        """At the present velocity, because the path runs through."""
+        return distance / velocity if velocity > 0.0 else -1.0
+
+    def length_known(self, distance: float) -> float:
+        return self.look_ahead.known
+
+    @property
+    def runs_out(self) -> float:
+        return self.look_ahead.known if self.look_ahead.runs_out else -1.0
+
     @property
     def passes(self) -> bool:
-        """The active block is finished, and the path is in the next one already."""
         return self._block_ahead() > self.block
 
     def part_to_go(self, distance: float) -> float:
-        """Part of the active block that is still to come, from the distance to its end."""
         length = self._ends[0] - self._begin
         return min(1.0, distance / length) if length > 0.0 else 0.0
 
     def pass_block(self) -> None:
-        """The next block is the active one."""
         self.block += 1
         self._begin = self._ends.popleft()
         self._feeds.popleft()
 
     @property
     def halted(self) -> bool:
-        """At rest at the end of the active block, until `resume`."""
         return self.look_ahead.halted and not self._rows
 
     def halt(self) -> None:
-        """Stops at the end of the first block at which the axes permit it."""
         kept = self._builder.kept - self.block
         self.look_ahead.halt([end for block, end in enumerate(self._ends) if end > 0.0 and block < kept])
 
-    def follow(self, count: int, cycle_time: float) -> list[LinkedPoint]:
-        """The next `count` cycles of the active block; fewer when it ends before."""
-        points: list[LinkedPoint] = []
+    def resume(self) -> None:
+        self.look_ahead.resume()
+
+    def follow(self, count: int) -> list[PathPoint]:
+        points: list[PathPoint] = []
         while len(points) < count:
             if not self._rows:
                 self._fill()
-                self._rows.extend(self.look_ahead.step(count - len(points), cycle_time))
+                self._rows.extend(self.look_ahead.step(count - len(points), self._cycle_time))
                 if not self._rows:
                     break
             if self.passes:

@@ -8,8 +8,10 @@ from typing import Final, NamedTuple
 from cnc_ptp.errors import CncError
 from cnc_ptp.motion import Limits, plan_to_velocity, stopping_distance
 from cnc_ptp.nc.canonical import LinearMove, Thread
+from cnc_ptp.parameters import AxisParameters, ChannelParameters
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.path.geometry import AxisLimits
+from cnc_ptp.path.motion_plan import feed_limits, path_axes
 from cnc_ptp.path.thread.retract import RETRACT_SHARE, Retract
 from cnc_ptp.path.thread.thread_geometry import ThreadGeometry
 
@@ -43,6 +45,18 @@ class ThreadSettings(NamedTuple):
     delay: int
     run_up: float
     retract: Retract | None
+
+
+def thread_settings(channel: ChannelParameters, axes: Sequence[AxisParameters], cycle_time: float) -> ThreadSettings:
+    """Of the threads of a channel. All axes of a path act equally late."""
+    names = [axis.name for axis in channel.axes]
+    retract = None
+    if channel.thread_retract_axis in names and channel.thread_retract:
+        axis = names.index(channel.thread_retract_axis)
+        retract = Retract(axis, channel.thread_retract_axis, channel.thread_retract)
+    delay = max((axis.control.delay_cycles for axis in axes), default=0)
+    places = sorted(path_axes(channel))
+    return ThreadSettings(names, feed_limits(axes), places, cycle_time, delay, channel.thread_run_up, retract)
 
 
 class Ramps(NamedTuple):

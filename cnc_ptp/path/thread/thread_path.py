@@ -24,8 +24,10 @@ from cnc_ptp.motion import Limits, Profile, plan_to_position, plan_to_velocity, 
 from cnc_ptp.motion.setpoints import MotionState
 from cnc_ptp.nc.canonical import LinearMove
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
-from cnc_ptp.path.linked_path import LinkedPoint, MotionSource
-from cnc_ptp.path.shape import AxisState
+from cnc_ptp.path.active_motion import ActiveMotion, PathPoint
+from cnc_ptp.path.interpolator import PathInterpolator
+from cnc_ptp.path.linked_path import MotionSource
+from cnc_ptp.path.shape import AxisState, standing
 from cnc_ptp.path.thread.lead import Fading, fading
 from cnc_ptp.path.thread.leading_spindle import STANDS, LeadingSpindle
 from cnc_ptp.path.thread.retract import Retract, RetractMotion
@@ -69,11 +71,10 @@ class Phase(Enum):
     STOPS = auto()
 
 
-class ThreadPath:
+class ThreadPath(ActiveMotion):
     """Runs the blocks of a thread.
 
     block   number of the active one, from 0
-    feed    programmed feed of the active block, mm/s: what the speed of the spindle amounts to
     """
 
     def __init__(
@@ -85,6 +86,7 @@ class ThreadPath:
         source: MotionSource | None,
     ) -> None:
         """`node` of the spindle; `source`: the motions behind `motion`."""
+        super().__init__()
         self._settings, self._source = settings, source
         self._spindle = LeadingSpindle(node, settings.cycle_time)
         self._words = words_of(motion)
@@ -122,8 +124,6 @@ class ThreadPath:
         self.released = True
         """Override and feed hold permit the start."""
         self.block = 0
-        self.notes: list[tuple[int, int, str]] = []
-        """Severity, number and text of what is to be told."""
         self._told_override = False
         self._extend()
 
@@ -136,21 +136,34 @@ class ThreadPath:
 
     @property
     def feed(self) -> float:
+        """What the speed of the spindle amounts to."""
         return self._motions[self.block].feed
 
-    @property
-    def target(self) -> tuple[float, ...]:
-        """End of the last block that is known."""
-        return self._motions[-1].target
+    def end(self, position: tuple[float, ...]) -> tuple[float, ...]:
+        return self._motions[-1].target if self.done and self._retract is None else position
+
+    def hand_over(self, interpolator: PathInterpolator) -> None:
+        interpolator.go_on(self.remaining_time - self._settings.cycle_time if self.done else 0.0)
+
+    def held_by(self, override: float) -> bool:
+        """Within the thread nothing holds it."""
+        return self.waits and not self.released
 
     @property
-    def cuts(self) -> bool:
-        """The axes are in the thread, and not on the ramp at its end."""
+    def can_be_held(self) -> bool:
+        return self.waits
+
+    def axis_failed(self, axis: int) -> None:
+        """It cannot retract."""
+        if self._retract is None and self.retract is not None and self.retract.axis == axis:
+            self.retract = None
+
+    @property
+    def cuts_thread(self) -> bool:
         return self.phase in (Phase.RUNS_UP, Phase.FOLLOWS)
 
     @property
     def stopped(self) -> bool:
-        """`stop` was called, and the axes are at a standstill."""
         if not self._stops or not self._retracted:
             return False
         ramp = self._profile
@@ -159,11 +172,9 @@ class ThreadPath:
 
     @property
     def passes(self) -> bool:
-        """The active block is finished, and the path is in the next one already."""
         return self._pending is not None and self._block_of(self._pending[0]) > self.block
 
     def pass_block(self) -> None:
-        """The next block is the active one."""
         self.block += 1
 
     @property
@@ -172,26 +183,20 @@ class ThreadPath:
         begin = 0.0 if self.waits else self._state[0]
         return max(0.0, self._end_of(self.block) - begin)
 
-    @property
-    def part_to_go(self) -> float:
-        """Part of the active block that is still to come."""
+    def part_to_go(self, distance: float) -> float:
         return min(1.0, self.angle_to_go / angle_of(self._motions[self.block]))
 
-    @property
-    def time_to_go(self) -> float:
-        """s to the end of the active block at the speed of the spindle, without waiting for it."""
+    def time_to_go(self, velocity: float, distance: float) -> float:
+        """At the speed of the spindle, without waiting for it."""
         return self.angle_to_go / self._speed if self._speed > 0.0 else -1.0
 
-    @property
-    def length_known(self) -> float:
-        """mm of path that are known."""
+    def length_known(self, distance: float) -> float:
         if self._geometry is None:
             return 0.0
         return (self._geometry.end - self._state[0]) * pitch_of(self._motions[self.block])
 
     @property
     def waits_for(self) -> str:
-        """What the thread waits for and does not come with time alone."""
         return self._spindle.waits_for if self.waits else ""
 
     def release(self, override: float, *, held: bool) -> None:
@@ -221,18 +226,15 @@ class ThreadPath:
         self._block_cycles = self._spindle.cycles
         self._last_cycle = first_cycle + self._spindle.cycles
         self._renewed = False
-        if self.cuts and not self._stops and self._geometry is not None:
+        if self.cuts_thread and not self._stops and self._geometry is not None:
             self._spindle.require_turning()
             number = self._geometry.block_at(self._state[0])
             slopes, motion = self._geometry.slopes_of(number), self._motions[number]
             require_velocity(self._settings, slopes, motion, abs(self._spindle.angle.speed))
 
-    def follow(self, count: int) -> list[LinkedPoint]:
-        """The next `count` cycles of the active block; fewer when it ends before.
-
-        Raises CncError 22080 … 22084 for a thread that cannot be begun.
-        """
-        points: list[LinkedPoint] = []
+    def follow(self, count: int) -> list[PathPoint]:
+        """As every motion. Raises CncError 22080 … 22084 for a thread that cannot be begun."""
+        points: list[PathPoint] = []
         self._renew()
         while len(points) < count:
             state = self._pending or self._next(self._cycle + 1)
@@ -247,10 +249,10 @@ class ThreadPath:
             points.append(self._point(state))
         return points
 
-    def _point(self, state: MotionState) -> LinkedPoint:
+    def _point(self, state: MotionState) -> PathPoint:
         geometry = self._geometry
         if geometry is None or self.phase is Phase.WAITS:
-            still = tuple([(position, 0.0, 0.0, 0.0) for position in self._start])
+            still = standing(self._start)
             return still, 0.0, self._distance(still, self._motions[0].target)
         states = geometry.evaluate(*state)
         distance = self._distance(states, geometry.start_of(self.block + 1))
@@ -295,7 +297,7 @@ class ThreadPath:
         geometry = self._geometry
         if geometry is None:
             return True
-        if self._stops or not self.cuts:
+        if self._stops or not self.cuts_thread:
             return False
         end = geometry.end
         geometry.append(motion.target, words_of(motion), self._speed)
@@ -444,7 +446,7 @@ class ThreadPath:
         if self._stops:
             return
         self._stops = True
-        if not self.cuts:
+        if not self.cuts_thread:
             return
         if self.retract is not None:
             self._begin_retract(self.retract)
@@ -454,10 +456,10 @@ class ThreadPath:
 
     @property
     def stop_text(self) -> str:
-        """What `stop` does now, for events; empty when the thread ends anyway."""
+        """Empty also when the thread ends anyway."""
         if self.waits:
             return "the thread is not begun"
-        if self._stops or not self.cuts:
+        if self._stops or not self.cuts_thread:
             return ""
         retract = self.retract
         if retract is not None:
@@ -491,11 +493,6 @@ class ThreadPath:
         slope = max(geometry.slopes_of(block)[retract.axis] for block in range(len(geometry)))
         limits, cycle_time = self._settings.limits[retract.axis], self._settings.cycle_time
         self._retract = RetractMotion(retract, limits, slope * self._speed, self._cycle, cycle_time)
-
-    @property
-    def retracts(self) -> bool:
-        """The thread was broken off by a retract."""
-        return self._retract is not None
 
     @property
     def _retracted(self) -> bool:
