@@ -259,5 +259,5 @@ def test_m01_without_optional_stop_is_passed() -> None:
 def test_a_slow_block_behind_a_fast_one_is_divided_as_it_is_needed() -> None:
     bench = MachineBench(program("G01 X100 F20000", "X200 F10"), end_when_idle=False)
     bench.run(0.6)
-    linked = bench.units["channel"]._motion._linked
-    assert linked is not None and sum(map(len, linked.look_ahead._stretches)) < 1000
+    linked = bench.units["channel"]._motion._active
+    assert isinstance(linked, LinkedPath) and sum(map(len, linked.look_ahead._stretches)) < 1000
