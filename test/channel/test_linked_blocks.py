@@ -11,6 +11,8 @@ from machine_support import CYCLE_TIME, MILL, MachineBench
 from machine_support import assert_axes_smooth as smooth
 from shapely import LineString, Point
 
+from cnc_ptp.path.linked_path import LinkedPath
+
 AXES = ("x", "y", "z")
 
 
