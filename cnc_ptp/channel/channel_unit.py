@@ -21,14 +21,14 @@ from cnc_ptp.channel.path_axes import NOT_AT_END, PathAxes
 from cnc_ptp.channel.path_spindle import PathSpindle
 from cnc_ptp.channel.program_check import PreparedProgram, ProgramCheck, ProgramState
 from cnc_ptp.channel.program_sequence import NO_SOURCE, OFF_PATH, Phase, ProgramSequence
-from cnc_ptp.channel.program_start import ProgramStart
+from cnc_ptp.channel.program_start import ProgramStart, start_point
 from cnc_ptp.channel.program_times import NO_TIMES, ProgramProgress, block_times
 from cnc_ptp.channel.program_view import ProgramView
+from cnc_ptp.channel.supervision import Finding, Supervision
 from cnc_ptp.channel.time_estimate import TimeEstimate
 from cnc_ptp.channel.timers import Timers
 from cnc_ptp.channel.waits import Outgoing
 from cnc_ptp.errors import CncError, Value
-from cnc_ptp.nc.block_search import StartPoint
 from cnc_ptp.nc.expressions.values import Variable
 from cnc_ptp.nc.faults import ProgramError, line_of_program
 from cnc_ptp.nc.flow.sections import Program
@@ -43,7 +43,7 @@ from cnc_ptp.path.geometry import begins_element
 from cnc_ptp.path.path_motion import PathMotion
 from cnc_ptp.path.shape import AxisState
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
-from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, Command, CycleBlock, CycleTick, Severity, SpindleBlock
+from cnc_ptp.protocol.blocks import ChannelBlock, Command, CycleBlock, CycleTick, Severity
 from cnc_ptp.protocol.channel_states import ChannelStateCode
 from cnc_ptp.protocol.commands import BAD_ARGUMENT
 from cnc_ptp.protocol.notes import START_STEP
@@ -56,19 +56,9 @@ BAD_OVERRIDE = 22006
 NOTHING_TO_ACKNOWLEDGE = 22007
 STILL_MOVING = 22008
 NO_TEXT = 22009
-MEMBER_IN_ERROR = 22012
-AXIS_NOT_FOLLOWING = 22015
-NOT_ACKNOWLEDGED = 22016
-SPINDLE_REFUSED = 22018
 NOTHING_AWAITS_EVENT = 22020
-HELD_BY_OVERRIDE = 22024
 FEED_WITHHELD = 22026
-INTERPRETER_SLOW = 22036
 THREAD_BROKEN = 22087
-SPINDLE_STANDS = 22140
-
-ENOUGH = 0.5
-"""Fill of the buffer of blocks at which the interpreter has kept up again."""
 
 C = ChannelStateCode
 
@@ -99,9 +89,8 @@ class ChannelUnit(Unit):
         functions = FunctionOutput(parameters, spindles, request_numbers or numbers(1))
         self._path_spindle = PathSpindle(parameters.name, functions.spindles, parameters.c_axis_ramp)
         on_path = [axes[node] for node in nodes]
-        self._cutting_speed, self._feed_per_turn = functions.cutting_speed, FeedPerTurn(functions.spindles)
-        turns = self._feed_per_turn.turns
-        self._motion = PathMotion(parameters, on_path, cycle_time, self._path_spindle.limits, turns)
+        self._cutting_speed, feed_per_turn = functions.cutting_speed, FeedPerTurn(functions.spindles)
+        self._motion = PathMotion(parameters, on_path, cycle_time, self._path_spindle.limits, feed_per_turn.turns)
         self._axes = PathAxes(nodes, axes, self._motion)
         self._handshake_timeout = handshake_timeout
         self._handshake_cycles = round(handshake_timeout / cycle_time)
@@ -111,6 +100,7 @@ class ChannelUnit(Unit):
         measuring = Measuring(names, [axes[node] for node in nodes], cycle_time, required=required)
         timers, spindle = Timers(cycle_time), self._path_spindle
         self._sequence = ProgramSequence(self._motion, functions, nodes, homing, measuring, timers, spindle)
+        self._watch = Supervision(parameters, self._sequence, self._motion, self._axes, feed_per_turn)
         self._estimate = TimeEstimate(self._motion, functions)
         self._check = ProgramCheck(parameters, axes, spindles)
         self._offsets = OffsetMemory(parameters.name, self._check.nc)
@@ -138,11 +128,7 @@ class ChannelUnit(Unit):
         self._feed_hold = False
         self._element_begins = False
         """The active element starts with the next block: what axes report belongs to the previous one."""
-        self._held: Sequence[str] = ()
-        """What the program waited for because of override 0, in the previous block."""
         self._error_id = 0
-        self.runs_out = False
-        """The path is slower because the interpreter does not keep up, and a warning was given."""
         self._apply_override()
 
     def _initial_state(self, feedback: Mapping[str, CycleBlock]) -> ProgramState:
@@ -346,7 +332,8 @@ class ChannelUnit(Unit):
         first_cycle, count = tick
         self._sequence.stream.begin_cycles(count)
         self._read_feedback(first_cycle, inputs)
-        self._watch_handshake(first_cycle)
+        if unanswered := self._watch.unanswered(first_cycle, self._handshake_cycles, self._handshake_timeout):
+            self._fault(first_cycle, *unanswered)
         outgoing = self._sequence.take_outgoing(first_cycle)
         spindle = self._path_spindle.node
         on_path = self._unfinished or self._sequence.phase not in OFF_PATH
@@ -354,11 +341,10 @@ class ChannelUnit(Unit):
         self._add(rows, [self._motion.point])
         self._fill(rows, first_cycle, count + 1)
         outgoing.commands += self._cutting_commands(first_cycle, rows, count)
-        if self._sequence.phase in (Phase.IDLE, Phase.RAMP_DOWN):
-            self.runs_out = False
-        else:
+        if self._sequence.phase not in (Phase.IDLE, Phase.RAMP_DOWN):
             self._sequence.stream.look_ahead()
-            self._watch_interpreter(first_cycle)
+        if slow := self._watch.interpreter():
+            self._warn_of(first_cycle, slow)
         self._axes.give(rows.axes[count - 1][: len(self._axes.nodes)], on_path=on_path)
         self._element_begins = begins_element(*rows.distance_to_go[count - 1 :])
         self._update_progress()
@@ -603,8 +589,8 @@ class ChannelUnit(Unit):
         can_be_held = self._motion.can_be_held and not self._element_begins
         line, before = self._sequence.source.line, self._axes.withheld
         for node in self._axes.read_releases(inputs, can_be_held=can_be_held):
-            text = f"the path stops in line {line} and waits for the feed release of axis {node}"
-            self.event(cycle, Severity.WARNING, FEED_WITHHELD, f"channel {self.name}: {text}", line)
+            reason = f"the path stops in line {line} and waits for the feed release of axis {node}"
+            self._warn_of(cycle, (FEED_WITHHELD, reason))
         if self._axes.withheld != before:
             self._apply_override()
 
@@ -616,18 +602,14 @@ class ChannelUnit(Unit):
         for reason in self._axes.read(inputs, just_started=self._just_started):
             self._fault(first_cycle, AXIS_NOT_READY, reason)
         self._just_started = False
-        in_use = self._axes.on_path or self._sequence.phase is not Phase.IDLE
-        for node, block in inputs.items():
-            if in_use:
-                self._check_member(first_cycle, node, block)
-            elif isinstance(block, SpindleBlock):
-                self._check_refused(first_cycle, node, block)
+        for number, reason in self._watch.faults(inputs):
+            self._fault(first_cycle, number, reason)
         self._read(self._sequence.read, first_cycle)
         self._read(self._read_path_spindle, first_cycle)
         self._motion.follow_spindle()
         self._warn(first_cycle)
-        self._report_held(first_cycle)
-        self._report_standing(first_cycle)
+        for finding in self._watch.waiting(first_cycle, self._override_percent, feed_hold=self._feed_hold):
+            self._warn_of(first_cycle, finding)
 
     def _read(self, read: Callable[[int, Mapping[str, CycleBlock]], None], first_cycle: int) -> None:
         """What the path or the program reads of the reports, which may be a fault of the active block."""
@@ -641,83 +623,19 @@ class ChannelUnit(Unit):
         if self._path_spindle.read(first_cycle):
             self._apply_override()
 
-    def _report_held(self, cycle: int) -> None:
-        """When override 0 lets the program wait, perhaps without end: a warning of what it waits for, once."""
-        held = [f"{what}, which is held by override 0" for what in self._sequence.held_by_override(cycle)]
-        if self._path_held():
-            held.append("a path override above 0")
-        line = self._sequence.source.line
-        for what in dict.fromkeys(held):
-            if what not in self._held:
-                text = f"channel {self.name}: the program waits in line {line} for {what}"
-                self.event(cycle, Severity.WARNING, HELD_BY_OVERRIDE, text, line)
-        self._held = held
-
-    def _report_standing(self, cycle: int) -> None:
-        """The path waits for a spindle (G95): a warning, once."""
-        node, line = self._feed_per_turn.awaited(self._motion), self._sequence.source.line
-        if node:
-            text = f"channel {self.name}: the path waits in line {line} for spindle {node} to turn (G95)"
-            self.event(cycle, Severity.WARNING, SPINDLE_STANDS, text, line)
-
-    def _path_held(self) -> bool:
-        """Override 0 alone has stopped the path within an element; a feed hold is visible anyway."""
-        held = self._sequence.phase is Phase.MOTION and self._motion.held and self._motion.velocity == 0.0
-        return held and self._override_percent == 0.0 and not self._feed_hold
-
-    def _watch_interpreter(self, cycle: int) -> None:
-        """A warning when the path becomes slower because too few blocks are known; another one after it was full."""
-        sequence = self._sequence
-        known = 0.0 if sequence.starts_late else self._motion.runs_out
-        if self.runs_out:
-            self.runs_out = sequence.starts_late or sequence.stream.fill < ENOUGH
-        elif known >= 0.0 and sequence.awaits_blocks:
-            self.runs_out = True
-            line, blocks = sequence.source.line, self._parameters.blocks_per_cycle
-            reason = f"blocks for {known:.3g} mm are known, P-CHAN-90006 gives {blocks} in a cycle"
-            text = f"the path is slower in line {line}: {reason}"
-            if sequence.starts_late:
-                reason = f"the next block is still computed, P-CHAN-90006 gives {blocks} in a cycle"
-                text = f"the path stands before line {line}: {reason}"
-            self.event(cycle, Severity.WARNING, INTERPRETER_SLOW, f"channel {self.name}: {text}", line)
+    @property
+    def runs_out(self) -> bool:
+        """The path is slower because the interpreter does not keep up."""
+        return self._watch.runs_out
 
     @property
     def blocks_ahead(self) -> tuple[float, float]:
         """How full the buffer of interpreted blocks is (0 … 1), and the length of the path that is known, mm."""
         return self._sequence.stream.fill, self._motion.path_ahead
 
-    def _check_member(self, first_cycle: int, node: str, block: CycleBlock) -> None:
-        """Axes and spindles must be without error, and axes on the path that the previous block gave them."""
-        if not isinstance(block, (AxisBlock, SpindleBlock)):
-            return
-        if block.error_id[-1]:
-            if isinstance(block, AxisBlock):
-                self._motion.axis_failed(self._axes.nodes.index(node))
-            self._fault(first_cycle, MEMBER_IN_ERROR, f"{node} is in error P-ERR-{block.error_id[-1]}")
-        elif isinstance(block, SpindleBlock):
-            self._check_refused(first_cycle, node, block)
-        elif (
-            self._axes.on_path and isinstance(block, AxisBlock) and block.state[-1] != AxisStateCode.SYNCHRONIZED_MOTION
-        ):
-            state = state_name(AxisStateCode(block.state[-1]))
-            self._fault(first_cycle, AXIS_NOT_FOLLOWING, f"{node} does not follow the path, it is in {state}")
-
-    def _check_refused(self, first_cycle: int, node: str, block: SpindleBlock) -> None:
-        """A spindle has refused a command of this channel: it is active for another source, for instance."""
-        refusal = next((refusal for refusal in block.refused if refusal.source == self.name), None)
-        if refusal is not None:
-            reason = f"{node} has refused a command, P-ERR-{refusal.number} {refusal.text}"
-            self._fault(first_cycle, SPINDLE_REFUSED, reason)
-
-    def _watch_handshake(self, first_cycle: int) -> None:
-        """The PLC must acknowledge within P-MACH-00060."""
-        limit = self._handshake_cycles
-        request = self._sequence.handshake.overdue(first_cycle, limit) if limit else None
-        if request is not None:
-            function = f"{request.kind}{request.number:02d}" if request.kind == "M" else request.kind
-            what = f"{function}{f' of spindle {request.spindle}' if request.spindle else ''} in line {request.line}"
-            waited = f"request {request.id} ({what}) within {self._handshake_timeout:g} s (P-MACH-00060)"
-            self._fault(first_cycle, NOT_ACKNOWLEDGED, f"the PLC has not acknowledged {waited}")
+    def _warn_of(self, cycle: int, finding: Finding) -> None:
+        number, text = finding
+        self.event(cycle, Severity.WARNING, number, f"channel {self.name}: {text}", self._sequence.source.line)
 
     def _fault_in_line(self, cycle: int, error: CncError) -> None:
         """Error of the active block; what the program has told before comes before it."""
@@ -770,27 +688,6 @@ def add_spindle(block: ChannelBlock, node: str, states: Sequence[AxisState]) -> 
     travel, speed, acceleration, jerk = map(list, zip(*states, strict=True))
     block.spindle_travel, block.spindle_speed = travel, speed
     block.spindle_acceleration, block.spindle_jerk = acceleration, jerk
-
-
-def start_point(
-    line: int | None,
-    block_number: int | None,
-    in_program: str,
-    pass_number: int | None,
-    refuse: Callable[[str, int, str], NoReturn],
-) -> StartPoint | None:
-    """The place of a start that is not at the beginning of the program; `refuse` is called for a contradiction."""
-    for name, value in (("line", line), ("block_number", block_number), ("pass_number", pass_number)):
-        if value is not None and value < 1:
-            refuse("start", BAD_ARGUMENT, f"{name} = {value} must be at least 1")
-    if line is not None and block_number is not None:
-        refuse("start", BAD_ARGUMENT, f"line = {line} and block_number = {block_number} are both given")
-    if line is None and block_number is None:
-        if in_program or pass_number is not None:
-            name = "in_program" if in_program else "pass_number"
-            refuse("start", BAD_ARGUMENT, f"{name} is given without line or block_number")
-        return None
-    return StartPoint(line or 0, block_number or 0, in_program, pass_number or 1)
 
 
 PHASE_STATES = {

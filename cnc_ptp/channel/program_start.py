@@ -9,7 +9,7 @@ points within the soft limits stays within them.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import Final
+from typing import Final, NoReturn
 
 from cnc_ptp.channel.skipped_functions import SkippedFunctions
 from cnc_ptp.errors import CncError
@@ -31,6 +31,7 @@ from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.interpreter import awaits_path
 from cnc_ptp.nc.measuring import measures
 from cnc_ptp.nc.program import ModalState
+from cnc_ptp.protocol.commands import BAD_ARGUMENT
 
 NOT_FOUND: Final = 22040
 NO_SUCH_PASS: Final = 22041
@@ -215,3 +216,24 @@ def _step(block: CanonicalBlock, axes: Sequence[str], start: Sequence[float], fi
         return f"G00: {moved}"
     where = "" if block.source.file == file else f" of {base_name(block.source.file)}"
     return f"line {block.source.line}{where}: {' '.join(format_function(function) for function in block.functions)}"
+
+
+def start_point(
+    line: int | None,
+    block_number: int | None,
+    in_program: str,
+    pass_number: int | None,
+    refuse: Callable[[str, int, str], NoReturn],
+) -> StartPoint | None:
+    """The place of a start that is not at the beginning of the program; `refuse` is called for a contradiction."""
+    for name, value in (("line", line), ("block_number", block_number), ("pass_number", pass_number)):
+        if value is not None and value < 1:
+            refuse("start", BAD_ARGUMENT, f"{name} = {value} must be at least 1")
+    if line is not None and block_number is not None:
+        refuse("start", BAD_ARGUMENT, f"line = {line} and block_number = {block_number} are both given")
+    if line is None and block_number is None:
+        if in_program or pass_number is not None:
+            name = "in_program" if in_program else "pass_number"
+            refuse("start", BAD_ARGUMENT, f"{name} is given without line or block_number")
+        return None
+    return StartPoint(line or 0, block_number or 0, in_program, pass_number or 1)

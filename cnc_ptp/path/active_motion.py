@@ -15,7 +15,7 @@ Note = tuple[int, int, str]
 
 
 class ActiveMotion:
-    """A motion from its start to its end. What a kind of motion has no use for does nothing here.
+    """A motion from its start to its end; methods that a kind of motion has no use for are empty.
 
     spindle_states   of the spindle that is an axis of the path, in the cycles that `follow` has given out last; empty
                      if the motion has none
