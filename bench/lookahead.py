@@ -67,6 +67,29 @@ def time_at_limits(part: PathPart) -> float:
     return time
 
 
+def shortest_time(stretch: Sequence[PathPart]) -> float:
+    """s that the axes need at least between two stops: the longer one of two bounds.
+
+    As `time_at_limits`; or for a straight line of the same length, with what the axes permit in the best direction.
+    """
+    directions = [part.geometry.shape(place) for part in stretch for place in (0.0, part.length)]
+    best = max(1.0 / max(abs(slope) for _, slope, _, _ in direction) for direction in directions)
+    limits = Limits(FEED, AXES[0].acceleration * best, AXES[0].deceleration * best, AXES[0].jerk * best)
+    straight = plan_rest_to_rest(0.0, sum([part.length for part in stretch]), limits).duration
+    return max(straight, sum([time_at_limits(part) for part in stretch]))
+
+
+def stretches(parts: Iterable[PathPart]) -> Iterator[list[PathPart]]:
+    """What lies between two stops."""
+    found: list[PathPart] = []
+    for part in parts:
+        if part.entry == 0.0 and found:
+            yield found
+            found = []
+        found.append(part)
+    yield found
+
+
 def contour(blocks: int) -> list[Point]:
     """Points of examples/contour.py."""
     example: dict[str, Any] = runpy.run_path(str(ROOT / "examples" / "contour.py"))
@@ -89,14 +112,11 @@ def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
     """The contour of examples/contour.py, 3,000 blocks, many blocks."""
     points = contour(effort.scaled(BLOCKS))
     show(f"{len(points):,} blocks")
-    limits = 0.0
-
-    def add(part: PathPart) -> None:
-        nonlocal limits
-        limits += time_at_limits(part)
-
-    share = 100.0 / run(points, add)
-    yield Figure("velocity reached of what feed and axes permit, mean", share * limits, "%", goal=90.0)
+    parts: list[PathPart] = []
+    percent = 100.0 / run(points, parts.append)
+    limits, shortest = sum(map(time_at_limits, parts)), sum(map(shortest_time, stretches(parts)))
+    yield Figure("shortest time that the axes permit, over the time of the path", percent * shortest, "%", goal=90.0)
+    yield Figure("the same with any acceleration along the path, no ramps at stops", percent * limits, "%")
     long, short = cost(points), cost(points[:FEW])
     yield Figure("blocks planned and run", 1.0 / long, "blocks/s", goal=20_000.0)
     yield Figure(f"cost of a block among {len(points):,} over {FEW:,}", long / short, "×", goal=1.2, at_most=True)
