@@ -10,19 +10,20 @@ from typing import Final, NamedTuple
 from cnc_ptp.kinematics.kinematics import Kinematics
 from cnc_ptp.motion import Limits
 from cnc_ptp.motion.limits import check_limits
-from cnc_ptp.nc.canonical import STEP, Dwell, FeedPerTurn, LinearMove
+from cnc_ptp.nc.canonical import STEP, Dwell, FeedPerTurn, LinearMove, Tap
 from cnc_ptp.parameters import AxisParameters, ChannelParameters
 from cnc_ptp.path.geometry import NEGLIGIBLE_MM, Arc, AxisLimits, Line
 from cnc_ptp.path.interpolator import LARGEST_OVERRIDE, PathInterpolator
-from cnc_ptp.path.linked_path import LinkedPath, MotionSource, Path, is_rapid, taps
+from cnc_ptp.path.linked_path import LinkedPath, MotionSource, Path, is_rapid
 from cnc_ptp.path.lookahead.look_ahead import LookAhead
 from cnc_ptp.path.lookahead.path_builder import LinkedMotion, PathBuilder
 from cnc_ptp.path.lookahead.spans import whole
 from cnc_ptp.path.planner import PLANNERS, Planner
 from cnc_ptp.path.shape import AxisState, without_jerk
 from cnc_ptp.path.thread.retract import Retract
-from cnc_ptp.path.thread.thread_check import ThreadSettings, angle_of
+from cnc_ptp.path.thread.thread_check import TURN, ThreadSettings, angle_of
 from cnc_ptp.path.thread.thread_path import ThreadPath
+from cnc_ptp.path.thread.thread_place import ThreadPlace
 from cnc_ptp.path.transformed_span import require_possible
 from cnc_ptp.protocol.blocks import CycleBlock
 
@@ -87,6 +88,8 @@ class PathMotion:
     spindle_states   of the spindle that is an axis of the path (deg since the path took it over), in the cycles that
                      `follow` has given out last; empty if the motion has none
     spindle_state    the last of them; at rest between motions
+    thread_places    of the cycles that `follow` has given out last; empty outside of threads and tapping
+    thread_place     the last of them
     """
 
     def __init__(
@@ -112,6 +115,10 @@ class PathMotion:
         self._spindle_limits = spindle_limits
         self.spindle_states: list[AxisState] = []
         self.spindle_state = AT_REST
+        self.thread_places: list[ThreadPlace | None] = []
+        self.thread_place: ThreadPlace | None = None
+        self._tapped: ThreadPlace | None = None
+        """The start of the active element if the spindle is its last coordinate."""
         self._spindle_turns = spindle_turns
         self._per_turn: FeedPerTurn | None = None
         """Of the active motion."""
@@ -121,8 +128,6 @@ class PathMotion:
         """… and the real ones in relation to them."""
         self._spindle_zero: float | None = None
         """Position of the C axis where the path has taken the spindle over; None while it is none."""
-        self._taps = False
-        """The spindle is the last coordinate of the active element."""
         self._threads = thread_settings(channel, axes, cycle_time)
         self._spindle_nodes = {spindle.name: spindle.node for spindle in channel.spindles}
         self._max_override = channel.max_override_percent / 100.0
@@ -147,6 +152,11 @@ class PathMotion:
         self.velocity = 0.0
         self.distance_to_go = 0.0
         self.feed = 0.0
+
+    @property
+    def delay(self) -> int:
+        """Cycles by which the axes act later than their setpoints come."""
+        return self._threads.delay
 
     @property
     def position(self) -> tuple[float, ...]:
@@ -307,10 +317,18 @@ class PathMotion:
         self._set_full_override(motion.full_override)
         if (source is not None or kinematics is not None) and self._link(plan, motion, source):
             return
-        self._taps = taps(motion)
+        if isinstance(motion, LinearMove) and motion.tap is not None:
+            self._tapped = self._tapped_place(motion.tap, element)
         self._interpolator.start(element, plan.limits, feed, planner=plan.planner)
         self._element, self.feed, self.distance_to_go = element, feed, element.length
         self._evaluate = evaluation(element, steps=plan.steps)
+
+    def _tapped_place(self, tap: Tap, line: Line | Arc) -> ThreadPlace:
+        """The start of a tapping motion, whose last coordinate is the spindle."""
+        ways = [end - begin for begin, end in zip(line.start, line.target, strict=True)]
+        axis = max(range(len(ways) - 1), key=lambda place: abs(ways[place]))
+        lead = TURN * ways[axis] / ways[-1] if ways[-1] != 0.0 else 0.0
+        return ThreadPlace(self._spindle_nodes[tap.spindle], axis, line.start[axis], lead)
 
     def _start_thread(self, motion: LinearMove, spindle: str, source: MotionSource | None) -> None:
         """The thread waits for its spindle from the last cycle on that was given out."""
@@ -455,13 +473,25 @@ class PathMotion:
         points = self._points(count)
         self._cycle += len(points)
         self.spindle_states = []
-        if self._taps:
+        if self._tapped is not None:
             self.spindle_states = [states[-1] for states, _, _ in points]
             points = [(states[:-1], velocity, distance) for states, velocity, distance in points]
             self.spindle_state = self.spindle_states[-1] if points else self.spindle_state
         if points:
             self.states, self.velocity, self.distance_to_go = points[-1]
+        self._note_places(points)
         return points
+
+    def _note_places(self, points: Sequence[PathPoint]) -> None:
+        """`finish` forgets them."""
+        tapped = self._tapped
+        if self.thread is not None:
+            self.thread_places = self.thread.places
+        elif tapped is not None:
+            self.thread_places = [tapped._replace(position=states[tapped.axis][0]) for states, _, _ in points]
+        else:
+            return
+        self.thread_place = self.thread_places[-1] if self.thread_places else None
 
     def _points(self, count: int) -> list[PathPoint]:
         if self.thread is not None:
@@ -547,12 +577,13 @@ class PathMotion:
         else:
             done = element is not None and self._interpolator.done
             target = element.target if element is not None and done else self.position
-            if self._taps:
+            if self._tapped is not None:
                 angle = target[-1] if done else self.spindle_state[0]
                 self.spindle_state = (angle, 0.0, 0.0, 0.0)
                 target = target[: len(self.states)]
             self.states = standing(target)
-        self._element, self._taps, self._per_turn = None, False, None
+        self._element, self._tapped, self._per_turn = None, None, None
+        self.thread_place, self.thread_places = None, []
         self.follow_spindle()
         self._set_full_override(False)
         self.velocity = self.distance_to_go = 0.0
