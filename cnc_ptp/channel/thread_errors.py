@@ -1,17 +1,19 @@
 """Pitch and phase error of threads: the path against the actual angle of its spindle, cycle by cycle.
 
-In cycle c the setpoint of cycle c - delay acts. With its spindle angle α (deg), position q (mm) and lead p (mm), the actual
-angle θ and the actual position x of that cycle, and s the values of the thread's first cycle:
+In cycle c the setpoint of cycle c - delay acts. With its spindle angle α (deg), position q (mm) and lead p (mm), and
+with the actual angle θ and the actual position x of cycle c:
 
-    phase error of the set value       α - θ                        deg
-    phase error of the actual value    α - θ + (x - q)·360/p        deg
-    pitch error                        (phase error - phase error in s)·p/360     mm
+    phase error of the set value       α - θ                    deg
+    phase error of the actual value    α - θ + (x - q)·360/p    deg
+    deviation e                        phase error · p/360      mm: beside its place by the angle
+    pitch error                        e(θ) - e(one turn before θ)    mm: way in the last turn - lead
 
 Spindle and axes report a cycle one block later, so the errors come with the block behind it.
 """
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Mapping, Sequence
 from math import isnan, nan
 from typing import Final, NamedTuple
@@ -34,6 +36,42 @@ class ThreadError(NamedTuple):
 NO_THREAD: Final = ThreadError(nan, nan, nan, nan, nan)
 
 
+class LastTurn:
+    """Deviations (mm) of set and actual value over the last turn of the spindle, in one direction."""
+
+    def __init__(self) -> None:
+        self._known: deque[tuple[float, float, float]] = deque()
+        """Angle in the direction of the turning, deviations; the first one is a turn behind or less."""
+        self._sense = 0.0
+        self._last = nan
+
+    def clear(self) -> None:
+        self._known.clear()
+        self._sense, self._last = 0.0, nan
+
+    def growth(self, angle: float, set_value: float, actual: float) -> tuple[float, float]:
+        """By how much they are greater than a turn before `angle` (deg); NaN within the first turn."""
+        way = angle - self._last
+        self._last = angle
+        if way * self._sense < 0.0:
+            self._known.clear()
+        if way > 0.0 or way < 0.0:
+            self._sense = way
+        turned = -angle if self._sense < 0.0 else angle
+        known = self._known
+        known.append((turned, set_value, actual))
+        while len(known) > 1 and known[1][0] <= turned - TURN:
+            known.popleft()
+        if known[0][0] > turned - TURN:
+            return nan, nan
+        begin, end = known[0], known[1]
+        part = (turned - TURN - begin[0]) / (end[0] - begin[0])
+        return (
+            set_value - begin[1] - part * (end[1] - begin[1]),
+            actual - begin[2] - part * (end[2] - begin[2]),
+        )
+
+
 class ThreadErrors:
     """Keeps what the path stands for until spindle and axes have reported the cycle in which it acts."""
 
@@ -42,8 +80,7 @@ class ThreadErrors:
         self._nodes, self._delay = nodes, delay
         self._places: dict[int, ThreadPlace] = {}
         """By cycle of the setpoint."""
-        self._start: tuple[float, float] | None = None
-        """Phase errors of set and actual value in the first cycle of the thread."""
+        self._last_turn = LastTurn()
 
     def note(self, first_cycle: int, count: int, places: Mapping[int, ThreadPlace]) -> None:
         """Takes the places of a block by row; rows behind its `count` cycles come again with the next one."""
@@ -79,16 +116,15 @@ class ThreadErrors:
         place = self._places.get(cycle - self._delay)
         index = cycle - spindle.first_cycle
         if place is None or place.lead == 0.0:
-            self._start = None
+            self._last_turn.clear()
             return NO_THREAD
-        set_phase = place.angle - spindle.actual_position_deg[index]
+        angle = spindle.actual_position_deg[index]
+        set_phase = place.angle - angle
         lag = self._actual_position(place.axis, cycle, feedback) - place.position
         actual_phase = set_phase + TURN * lag / place.lead
-        if self._start is None:
-            self._start = set_phase, actual_phase
         per_degree = place.lead / TURN
-        set_pitch, actual_pitch = (set_phase - self._start[0]), (actual_phase - self._start[1])
-        return ThreadError(place.lead, set_pitch * per_degree, actual_pitch * per_degree, set_phase, actual_phase)
+        set_pitch, actual_pitch = self._last_turn.growth(angle, set_phase * per_degree, actual_phase * per_degree)
+        return ThreadError(place.lead, set_pitch, actual_pitch, set_phase, actual_phase)
 
     def _actual_position(self, axis: int, cycle: int, feedback: Mapping[str, CycleBlock]) -> float:
         """mm; NaN of an axis that has not reported."""

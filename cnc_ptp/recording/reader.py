@@ -24,6 +24,7 @@ from cnc_ptp.wire.schemas import full_name, parse_schema
 AXIS_STATE = "cnc_ptp/msg/AxisState"
 SPINDLE_STATE = "cnc_ptp/msg/SpindleState"
 CHANNEL_STATE = "cnc_ptp/msg/ChannelState"
+THREAD_STATE = "cnc_ptp/msg/ThreadState"
 STATE_TYPES = (AXIS_STATE, SPINDLE_STATE, CHANNEL_STATE)
 TICK = "cnc_ptp/msg/CycleTick"
 EVENT = "cnc_ptp/msg/Event"
@@ -65,7 +66,8 @@ class Recorded:
     """A recording that was read.
 
     `states[topic]` is a structured array (n,) in the order of the file with the fields of the message (`cycle`,
-    `set_position`, …, `header.stamp.sec`, `header.stamp.nanosec`). `complete` is False when the file was cut off;
+    `set_position`, …, `header.stamp.sec`, `header.stamp.nanosec`), `threads[channel]` one with the cycles of its
+    threads. `complete` is False when the file was cut off;
     `missing` then says what is missing.
     """
 
@@ -77,6 +79,7 @@ class Recorded:
     metadata: dict[str, str] = field(default_factory=dict)
     topics: dict[str, TopicInfo] = field(default_factory=dict)
     states: dict[str, Records] = field(default_factory=dict)
+    threads: dict[str, Records] = field(default_factory=dict)
     ticks: Records | None = None
     events: list[Event] = field(default_factory=list)
     commands: list[CommandRecord] = field(default_factory=list)
@@ -234,6 +237,8 @@ class _Reader:
     def _store(self, info: TopicInfo, rows: Records) -> None:
         if info.type_name == TICK:
             self.recorded.ticks = rows
+        elif info.type_name == THREAD_STATE:
+            self.recorded.threads[info.topic.removeprefix("/").removesuffix("/thread")] = rows
         else:
             self.recorded.states[info.topic] = rows
 
@@ -243,7 +248,7 @@ class _Reader:
         info.first_ns = int(times.min()) if info.count == 0 else min(info.first_ns, int(times.min()))
         info.last_ns = max(info.last_ns, int(times.max()))
         info.count += len(times)
-        if info.type_name in STATE_TYPES or info.type_name == TICK:
+        if info.type_name in (*STATE_TYPES, THREAD_STATE, TICK):
             self._fixed(info, run, record)
         elif info.type_name in self._handlers:
             self._decode(info, run, record)

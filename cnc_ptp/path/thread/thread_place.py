@@ -13,7 +13,7 @@ class ThreadPlace(NamedTuple):
     axis      place of the axis along which the pitch counts: the one with the longest distance
     position  set position of this axis, mm
     lead      mm along this axis while the angle of the spindle grows by 360 deg; signed, of this cycle
-    angle     of the spindle at which the axis should be there, deg; NaN when tapping: the set angle that the spindle reports
+    angle     of the spindle at which the axis should be there, deg; when tapping NaN: what the spindle reports as set
     """
 
     spindle: str
