@@ -146,6 +146,7 @@ class ChannelOffsets:
     machine_coordinates: bool
     matrix: list[float]
     shift: list[float]
+    origin: list[float] = field(default_factory=list)
 
 
 class CycleTick(NamedTuple):

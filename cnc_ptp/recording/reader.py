@@ -29,6 +29,7 @@ STATE_TYPES = (AXIS_STATE, SPINDLE_STATE, CHANNEL_STATE)
 TICK = "cnc_ptp/msg/CycleTick"
 EVENT = "cnc_ptp/msg/Event"
 COMMAND = "cnc_ptp/msg/CommandRecord"
+OFFSETS = "cnc_ptp/msg/ChannelOffsets"
 DIAGNOSTICS = "diagnostic_msgs/msg/DiagnosticArray"
 
 
@@ -50,6 +51,20 @@ class Diagnostic(NamedTuple):
     time_ns: int
     name: str
     values: dict[str, str]
+
+
+class Coordinates(NamedTuple):
+    """What lies between programmed and machine positions of a channel from a cycle on (a part of ChannelOffsets).
+
+    `axes` by name; `systems`: coordinate systems and kinematics (#FACE, #CYL) by command, `origin` by axis: machine
+    position of the zero point of the kinematics (mm, deg), empty without.
+    """
+
+    cycle: int
+    channel: str
+    axes: tuple[str, ...]
+    systems: tuple[str, ...]
+    origin: tuple[float, ...]
 
 
 class RawMessage(NamedTuple):
@@ -84,6 +99,7 @@ class Recorded:
     events: list[Event] = field(default_factory=list)
     commands: list[CommandRecord] = field(default_factory=list)
     diagnostics: list[Diagnostic] = field(default_factory=list)
+    coordinates: list[Coordinates] = field(default_factory=list)
 
     @property
     def start_ns(self) -> int:
@@ -200,10 +216,11 @@ class _Reader:
         self._layouts: dict[str, Layout] = {}
         self._rows: dict[str, list[npt.NDArray[np.uint8]]] = {}
         self._decoders = DecoderFactory()
-        self._handlers: dict[str, Callable[[int, Any], None]] = {
+        self._handlers: dict[str, Callable[[int, str, Any], None]] = {
             EVENT: self._event,
             COMMAND: self._command,
             DIAGNOSTICS: self._diagnostics,
+            OFFSETS: self._offsets,
         }
 
     def take(self, record: RawRecord) -> None:
@@ -232,6 +249,7 @@ class _Reader:
             self._store(recorded.topics[topic], self._layouts[topic].read(np.concatenate(rows).reshape(-1)))
         recorded.events.sort(key=lambda event: event.cycle)
         recorded.commands.sort(key=lambda command: command.cycle)
+        recorded.coordinates.sort(key=lambda change: change.cycle)
         return recorded
 
     def _store(self, info: TopicInfo, rows: Records) -> None:
@@ -271,7 +289,7 @@ class _Reader:
         handler = self._handlers[info.type_name]
         for time, content in zip(run.head["log_time"].tolist(), run.contents, strict=True):
             try:
-                handler(time, decoder(content.tobytes()) if decoder else None)
+                handler(time, info.topic, decoder(content.tobytes()) if decoder else None)
             except Exception as error:  # whatever the generated decoder raises on bytes that are no such message
                 reason = f"a message of {info.topic} is not a {info.type_name}: {error!r}"
                 raise self.records.corrupt(record.offset, reason) from error
@@ -279,13 +297,13 @@ class _Reader:
     def _schema(self, run: MessageRun) -> Schema:
         return self.names.schemas[self.names.channels[run.channel_id].schema_id]
 
-    def _event(self, _time: int, message: Any) -> None:
+    def _event(self, _time: int, _topic: str, message: Any) -> None:
         values = [EventValue(value.name, value.value, value.unit) for value in getattr(message, "values", ())]
         self.recorded.events.append(
             Event(message.cycle, message.source, message.severity, message.error_id, message.text, message.line, values)
         )
 
-    def _command(self, _time: int, message: Any) -> None:
+    def _command(self, _time: int, _topic: str, message: Any) -> None:
         self.recorded.commands.append(
             CommandRecord(
                 message.cycle,
@@ -299,7 +317,13 @@ class _Reader:
             )
         )
 
-    def _diagnostics(self, time: int, message: Any) -> None:
+    def _diagnostics(self, time: int, _topic: str, message: Any) -> None:
         for status in message.status:
             values = {pair.key: pair.value for pair in status.values}
             self.recorded.diagnostics.append(Diagnostic(time, status.name, values))
+
+    def _offsets(self, _time: int, topic: str, message: Any) -> None:
+        channel = topic.removeprefix("/").removesuffix("/offsets")
+        axes, systems = tuple(message.axes), tuple(message.systems)
+        origin = tuple(getattr(message, "origin", ()))
+        self.recorded.coordinates.append(Coordinates(message.cycle, channel, axes, systems, origin))
