@@ -169,4 +169,4 @@ def _turn(part: np.typing.NDArray[np.int64]) -> np.typing.NDArray[np.int64]:
     return np.unique(np.linspace(part[0], part[-1], POINTS_OF_A_TURN).astype(np.int64))
 
 
-POINTS_OF_A_TURN = 9
+POINTS_OF_A_TURN = 5
