@@ -10,24 +10,28 @@ from cnc_ptp.plots.path_figures import Colouring, Path, path_figures
 from cnc_ptp.plots.program_run import machine_of
 from cnc_ptp.recording.decimate import path_points
 from cnc_ptp.recording.reader import Recorded
-from cnc_ptp.recording.surfaces import CYLINDER, FACE, Surface, surfaces
+from cnc_ptp.recording.rows import ACTUAL
+from cnc_ptp.recording.surfaces import COMMAND, CYLINDER, FACE, Surface, surfaces
 
 MOST = 8
 """Of each kind that are drawn."""
 TITLES = {FACE: "Front face", CYLINDER: "Lateral surface, unrolled"}
 NOTES = {
-    FACE: "Actual position in Cartesian coordinates of the face, as one looks at it; the origin is its zero point.",
-    CYLINDER: "Actual position on the cylinder of the command: length of arc over the longitudinal axis.",
+    FACE: "{} positions in Cartesian coordinates of the face, as one looks at it; the origin is its zero point.",
+    CYLINDER: "{} positions on the cylinder of the command: length of arc over the longitudinal axis.",
 }
 
 
-def surface_sections(recorded: Recorded) -> str:
-    """A section for each kind; empty for a recording without #FACE and #CYL."""
-    found = surfaces(recorded, machine_of(recorded)) if recorded.coordinates else []
-    return "".join(_section(kind, [each for each in found if each.kind == kind], recorded) for kind in TITLES)
+def surface_sections(recorded: Recorded, values: str = ACTUAL) -> str:
+    """A section for each kind, of values SET or ACTUAL; empty for a recording without #FACE and #CYL."""
+    if not any(COMMAND.fullmatch(system) for change in recorded.coordinates for system in change.systems):
+        return ""
+    found = surfaces(recorded, machine_of(recorded), values)
+    kinds = {kind: [each for each in found if each.kind == kind] for kind in TITLES}
+    return "".join(_section(kind, each, recorded, values) for kind, each in kinds.items())
 
 
-def _section(kind: str, found: Sequence[Surface], recorded: Recorded) -> str:
+def _section(kind: str, found: Sequence[Surface], recorded: Recorded, values: str) -> str:
     if not found:
         return ""
     plots = "".join(
@@ -36,7 +40,9 @@ def _section(kind: str, found: Sequence[Surface], recorded: Recorded) -> str:
     )
     style = "paths two" if len(found) > 1 else "paths"
     left_out = f" The first {MOST} of {len(found)}." if len(found) > MOST else ""
-    return section(TITLES[kind], f'<div class="{style}">{plots}</div>', NOTES[kind] + left_out)
+    return section(
+        TITLES[kind], f'<div class="{style}">{plots}</div>', NOTES[kind].format(values.capitalize()) + left_out
+    )
 
 
 def _plot(each: Surface, recorded: Recorded, number: int) -> str:

@@ -324,6 +324,10 @@ class _Reader:
 
     def _offsets(self, _time: int, topic: str, message: Any) -> None:
         channel = topic.removeprefix("/").removesuffix("/offsets")
-        axes, systems = tuple(message.axes), tuple(message.systems)
-        origin = tuple(getattr(message, "origin", ()))
-        self.recorded.coordinates.append(Coordinates(message.cycle, channel, axes, systems, origin))
+        self.recorded.coordinates.append(coordinates(channel, message))
+
+
+def coordinates(channel: str, offsets: Any) -> Coordinates:
+    """Of ChannelOffsets; those of older recordings have no origin."""
+    origin = tuple(getattr(offsets, "origin", ()))
+    return Coordinates(offsets.cycle, channel, tuple(offsets.axes), tuple(offsets.systems), origin)

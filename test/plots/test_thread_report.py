@@ -16,6 +16,7 @@ from cnc_ptp.parameters import load_machine, machine_text
 from cnc_ptp.plots.report import report_page
 from cnc_ptp.plots.thread_sections import unrolled
 from cnc_ptp.recording.reader import Recorded, read_recording
+from cnc_ptp.recording.rows import SET
 from cnc_ptp.recording.surfaces import surfaces
 from cnc_ptp.recording.thread_passes import phase_against, thread_passes
 from cnc_ptp.recording.writer import Recording
@@ -154,6 +155,14 @@ def test_the_face_is_cartesian(workpiece):
     assert between.sum() > 100
     assert abs(path.real + path.imag - 20.0)[between].max() < 0.2
     assert abs(phase(path[-1])) == pytest.approx(pi, abs=0.01)
+
+
+def test_set_values_on_the_face_are_on_the_programmed_lines(workpiece):
+    face = surfaces(workpiece, load_machine(workpiece.machine_yaml, "machine.yaml"), SET)[0]
+    x, y = face.points
+    between = (x > 1.0) & (y > 1.0)
+    assert between.sum() > 100
+    assert abs(x + y - 20.0)[between].max() < 1e-9
 
 
 def test_the_lateral_surface_is_unrolled(workpiece):
