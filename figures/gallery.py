@@ -19,6 +19,8 @@ SUBJECTS = {
     "slave": "[Slave axes](slaves.md)",
     "control": "[Position control](control.md)",
     "spindle": "[Spindles](spindles.md)",
+    "thread": "[Threads](threads.md)",
+    "caxis": "[C axis](caxis.md)",
 }
 """First word of the file name, and the page that explains the figure."""
 

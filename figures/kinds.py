@@ -16,6 +16,8 @@ from figures import (
     spindle_and_path,
     spindle_curve,
     spindle_states,
+    surfaces,
+    thread,
     weights,
 )
 from figures.run import FigureRun
@@ -32,6 +34,8 @@ KINDS: Mapping[str, Callable[[FigureScenario, FigureRun], Figure]] = {
     "gear_ranges": gear_ranges.draw,
     "over_path": over_path.draw,
     "corners": corners.draw,
+    "thread": thread.draw,
+    "surfaces": surfaces.draw,
 }
 
 

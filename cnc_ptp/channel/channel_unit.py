@@ -25,6 +25,7 @@ from cnc_ptp.channel.program_start import ProgramStart, start_point
 from cnc_ptp.channel.program_times import NO_TIMES, ProgramProgress, block_times
 from cnc_ptp.channel.program_view import ProgramView
 from cnc_ptp.channel.supervision import Finding, Supervision
+from cnc_ptp.channel.thread_errors import ThreadErrors, add_thread
 from cnc_ptp.channel.time_estimate import TimeEstimate
 from cnc_ptp.channel.timers import Timers
 from cnc_ptp.channel.waits import Outgoing
@@ -42,6 +43,7 @@ from cnc_ptp.path.active_motion import PathPoint
 from cnc_ptp.path.geometry import begins_element
 from cnc_ptp.path.path_motion import PathMotion
 from cnc_ptp.path.shape import AxisState
+from cnc_ptp.path.thread.thread_place import ThreadPlace
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
 from cnc_ptp.protocol.blocks import ChannelBlock, Command, CycleBlock, CycleTick, Severity
 from cnc_ptp.protocol.channel_states import ChannelStateCode
@@ -91,6 +93,7 @@ class ChannelUnit(Unit):
         on_path = [axes[node] for node in nodes]
         self._cutting_speed, feed_per_turn = functions.cutting_speed, FeedPerTurn(functions.spindles)
         self._motion = PathMotion(parameters, on_path, cycle_time, self._path_spindle.limits, feed_per_turn.turns)
+        self._thread_errors = ThreadErrors(nodes, self._motion.delay)
         self._axes = PathAxes(nodes, axes, self._motion)
         self._handshake_timeout = handshake_timeout
         self._handshake_cycles = round(handshake_timeout / cycle_time)
@@ -332,13 +335,14 @@ class ChannelUnit(Unit):
         first_cycle, count = tick
         self._sequence.stream.begin_cycles(count)
         self._read_feedback(first_cycle, inputs)
+        errors = self._thread_errors.take(first_cycle, inputs)
         if unanswered := self._watch.unanswered(first_cycle, self._handshake_cycles, self._handshake_timeout):
             self._fault(first_cycle, *unanswered)
         outgoing = self._sequence.take_outgoing(first_cycle)
         spindle = self._path_spindle.node
         on_path = self._unfinished or self._sequence.phase not in OFF_PATH
         rows = CycleRows(with_spindle=bool(spindle))
-        self._add(rows, [self._motion.point])
+        self._add(rows, [self._motion.point], thread=self._motion.thread_places[-1:])
         self._fill(rows, first_cycle, count + 1)
         outgoing.commands += self._cutting_commands(first_cycle, rows, count)
         if self._sequence.phase not in (Phase.IDLE, Phase.RAMP_DOWN):
@@ -358,6 +362,8 @@ class ChannelUnit(Unit):
         block = self._channel_block(tick, rows, outgoing, path_active=on_path)
         if spindle:
             add_spindle(block, spindle, rows.spindle[:count])
+        add_thread(block, errors)
+        self._thread_errors.note(first_cycle, count, rows.thread_places)
         return block
 
     def _cutting_commands(self, first_cycle: int, rows: CycleRows, count: int) -> list[Command]:
@@ -450,7 +456,7 @@ class ChannelUnit(Unit):
         except CncError as error:
             self._fault_in_line(cycle, error)
             return
-        self._add(rows, points, self._motion.spindle_states)
+        self._add(rows, points, self._motion.spindle_states, self._motion.thread_places)
         if cuts and points:
             rows.cut_end = len(rows) - 1
         if self._motion.passes:
@@ -492,8 +498,18 @@ class ChannelUnit(Unit):
         for number, note, line in notes:
             self.event(cycle, Severity.WARNING, number, f"channel {self.name}: {note}", line)
 
-    def _add(self, rows: CycleRows, points: Sequence[PathPoint], spindle: Sequence[AxisState] = ()) -> None:
-        """Adds the cycles of `points`, all of the same phase and program line; `spindle`: of that on the path."""
+    def _add(
+        self,
+        rows: CycleRows,
+        points: Sequence[PathPoint],
+        spindle: Sequence[AxisState] = (),
+        thread: Sequence[ThreadPlace | None] = (),
+    ) -> None:
+        """Adds the cycles of `points`, all of the same phase and program line.
+
+        `spindle`: of that on the path; `thread`: those within a thread.
+        """
+        rows.note_thread(thread)
         count = len(points)
         state = self._state_code()
         held = state == C.RUNNING and self._motion.held

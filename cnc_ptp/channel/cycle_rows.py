@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from cnc_ptp.path.shape import AxisState, AxisStates
+from cnc_ptp.path.thread.thread_place import ThreadPlace
 
 
 class CycleRows:
@@ -14,6 +17,8 @@ class CycleRows:
         self.axes: list[AxisStates] = []
         self.spindle: list[AxisState] = []
         """Of the spindle on the path."""
+        self.thread_places: dict[int, ThreadPlace] = {}
+        """By row, of those within a thread."""
         self.line: list[int] = []
         self.block_number: list[int] = []
         self.path_velocity: list[float] = []
@@ -27,3 +32,10 @@ class CycleRows:
 
     def __len__(self) -> int:
         return len(self.axes)
+
+    def note_thread(self, places: Sequence[ThreadPlace | None]) -> None:
+        """Of the rows that come next."""
+        begin = len(self)
+        for number, place in enumerate(places):
+            if place is not None:
+                self.thread_places[begin + number] = place

@@ -162,6 +162,7 @@ class OffsetMemory:
             machine_coordinates=report.machine,
             matrix=list(report.matrix),
             shift=list(report.shift),
+            origin=[] if report.kinematics is None else list(report.kinematics.origin),
         )
 
 

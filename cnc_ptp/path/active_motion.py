@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from cnc_ptp.path.interpolator import PathInterpolator
 from cnc_ptp.path.shape import AxisState, AxisStates
+from cnc_ptp.path.thread.thread_place import ThreadPlace
 from cnc_ptp.protocol.blocks import CycleBlock
 
 PathPoint = tuple[AxisStates, float, float]
@@ -19,11 +20,13 @@ class ActiveMotion:
 
     spindle_states   of the spindle that is an axis of the path, in the cycles that `follow` has given out last; empty
                      if the motion has none
+    places           in a thread and when tapping: of those cycles; None where the path does not follow the spindle
     notes            what is to be told of the motion
     """
 
     def __init__(self) -> None:
         self.spindle_states: list[AxisState] = []
+        self.places: list[ThreadPlace | None] = []
         self.notes: list[Note] = []
 
     # cycles

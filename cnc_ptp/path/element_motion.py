@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from cnc_ptp.path.active_motion import ActiveMotion, PathPoint
 from cnc_ptp.path.geometry import Arc, Line
 from cnc_ptp.path.interpolator import PathInterpolator
 from cnc_ptp.path.motion_plan import Plan
 from cnc_ptp.path.shape import AxisStates, standing, without_jerk
+from cnc_ptp.path.thread.thread_check import TURN
+from cnc_ptp.path.thread.thread_place import ThreadPlace
 
 Evaluation = Callable[[float, float, float, float], AxisStates]
 """States of the axes from path length, velocity, acceleration and jerk."""
@@ -61,9 +63,16 @@ class ElementMotion(ActiveMotion):
 class TappingMotion(ElementMotion):
     """An element with a spindle as its last coordinate (deg)."""
 
+    def __init__(self, interpolator: PathInterpolator, cycle_time: float, plan: Plan, spindle: str) -> None:
+        """`spindle`: its node. Raises as `ElementMotion`."""
+        super().__init__(interpolator, cycle_time, plan)
+        self._start = thread_place(spindle, plan.element.start, plan.element.target)
+
     def follow(self, count: int) -> list[PathPoint]:
         points = super().follow(count)
+        start, axis = self._start, self._start.axis
         self.spindle_states = [states[-1] for states, _, _ in points]
+        self.places = [start._replace(position=states[axis][0]) for states, _, _ in points]
         return [(states[:-1], velocity, distance) for states, velocity, distance in points]
 
     def rest(self, position: tuple[float, ...]) -> tuple[float, ...]:
@@ -106,6 +115,14 @@ class DwellMotion(ActiveMotion):
 
     def part_to_go(self, distance: float) -> float:
         return max(0.0, self._interpolator.time_to_go) / self._seconds if self._seconds > 0.0 else 0.0
+
+
+def thread_place(spindle: str, start: Sequence[float], target: Sequence[float]) -> ThreadPlace:
+    """The start of a tapping motion, whose last coordinate is the spindle."""
+    *ways, turned = [end - begin for begin, end in zip(start, target, strict=True)]
+    axis = max(range(len(ways)), key=lambda place: abs(ways[place]))
+    lead = TURN * ways[axis] / turned if turned != 0.0 else 0.0
+    return ThreadPlace(spindle, axis, start[axis], lead)
 
 
 def evaluation(element: Line | Arc, *, steps: bool) -> Evaluation:

@@ -12,7 +12,7 @@ from cnc_ptp.path.active_motion import ActiveMotion, Note, PathPoint
 from cnc_ptp.path.element_motion import DwellMotion, ElementMotion, TappingMotion
 from cnc_ptp.path.geometry import AxisLimits
 from cnc_ptp.path.interpolator import LARGEST_OVERRIDE, PathInterpolator
-from cnc_ptp.path.linked_path import LinkedPath, MotionSource, Path, taps
+from cnc_ptp.path.linked_path import LinkedPath, MotionSource, Path
 from cnc_ptp.path.lookahead.look_ahead import LookAhead
 from cnc_ptp.path.lookahead.path_builder import LinkedMotion, PathBuilder
 from cnc_ptp.path.lookahead.spans import whole
@@ -20,6 +20,7 @@ from cnc_ptp.path.motion_plan import LimitsOfSpindle, MotionPlanner, Plan
 from cnc_ptp.path.shape import AT_REST, AxisState, AxisStates, standing
 from cnc_ptp.path.thread.thread_check import angle_of, thread_settings
 from cnc_ptp.path.thread.thread_path import ThreadPath
+from cnc_ptp.path.thread.thread_place import ThreadPlace
 from cnc_ptp.path.transformed_span import require_possible
 from cnc_ptp.protocol.blocks import CycleBlock
 
@@ -80,6 +81,11 @@ class PathMotion:
         self.feed = 0.0
 
     # state
+
+    @property
+    def delay(self) -> int:
+        """Cycles by which the axes act later than their setpoints come."""
+        return self._threads.delay
 
     @property
     def position(self) -> tuple[float, ...]:
@@ -181,6 +187,11 @@ class PathMotion:
         """As `spindle_state`, in the cycles that `follow` has given out last; empty if the motion has none."""
         return [] if self._active is None else self._active.spindle_states
 
+    @property
+    def thread_places(self) -> list[ThreadPlace | None]:
+        """Of the cycles that `follow` has given out last; empty outside of threads and tapping."""
+        return [] if self._active is None else self._active.places
+
     def take_notes(self) -> list[Note]:
         """What there is to be told of the active motion."""
         if self._active is None or not self._active.notes:
@@ -211,10 +222,16 @@ class PathMotion:
         self._set_full_override(motion.full_override)
         active: ActiveMotion | None = self._linked(plan, motion, source)
         if active is None:
-            kind = TappingMotion if taps(motion) else ElementMotion
-            active = kind(self._interpolator, self._cycle_time, plan)
+            active = self._single(plan, motion)
             self.distance_to_go = plan.element.length
         self._active, self.feed = active, active.feed
+
+    def _single(self, plan: Plan, motion: Path) -> ElementMotion:
+        """A motion with an exact stop at its end."""
+        if isinstance(motion, LinearMove) and motion.tap is not None:
+            node = self._spindle_nodes[motion.tap.spindle]
+            return TappingMotion(self._interpolator, self._cycle_time, plan, node)
+        return ElementMotion(self._interpolator, self._cycle_time, plan)
 
     def _linked(self, plan: Plan, motion: Path, source: MotionSource | None) -> LinkedPath | None:
         """A path of several blocks if the next motion can be linked to this one, and any with kinematics."""

@@ -22,6 +22,16 @@ NUMBERS = (
     "length in mm",
     "F in mm/min",
     "reached in mm/min",
+    "pass",
+    "at s",
+    "from mm",
+    "to mm",
+    "lead mm",
+    "rpm",
+    "pitch error set µm",
+    "pitch error actual µm",
+    "phase deg",
+    "against pass 1 deg",
 )  # columns of numbers
 CONFIG = {
     "displaylogo": False,

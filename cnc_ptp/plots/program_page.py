@@ -22,6 +22,7 @@ from cnc_ptp.plots.page import (
 from cnc_ptp.plots.path_figures import Colouring, Path, path_axes, path_figures
 from cnc_ptp.plots.program_run import BlockPass, Floats, ProgramRun, program_run
 from cnc_ptp.plots.report_figures import ROW_GAP, ROW_HEIGHT, compact, style
+from cnc_ptp.plots.surface_sections import surface_sections
 from cnc_ptp.plots.time_plots import HINT, time_plots
 from cnc_ptp.recording.decimate import line_points, path_points
 from cnc_ptp.recording.reader import CHANNEL_STATE, Recorded
@@ -54,6 +55,7 @@ def program_page(recorded: Recorded, run: ProgramRun, *, title: str, details: Se
         "<main>",
         card_grid(cards),
         program_sections(run, colour),
+        surface_sections(recorded, SET),
         section("Over time", over_time, HINT),
         "</main></body></html>\n",
     ]

@@ -24,6 +24,8 @@ from cnc_ptp.plots.page import (
 )
 from cnc_ptp.plots.path_figures import actual_path_figures
 from cnc_ptp.plots.program_page import recorded_program
+from cnc_ptp.plots.surface_sections import surface_sections
+from cnc_ptp.plots.thread_sections import thread_sections
 from cnc_ptp.plots.time_plots import HINT, time_plots
 from cnc_ptp.protocol.blocks import CommandRecord, Event, Severity
 from cnc_ptp.recording.command_words import argument_words, json_object
@@ -44,6 +46,8 @@ def report_page(recorded: Recorded, *, program: str = "", date: str = "") -> str
         _cards(figures),
         _paths(actual_path_figures(recorded, figures["units"])),
         recorded_program(recorded),
+        surface_sections(recorded),
+        thread_sections(recorded),
         _times(recorded, figures["units"]),
         _events(recorded.events, recorded.cycle_time_ns * 1e-9),
         _commands(recorded, {**dict.fromkeys(recorded.of_type(SPINDLE_STATE), "deg"), **figures["units"]}),

@@ -146,6 +146,7 @@ class ChannelOffsets:
     machine_coordinates: bool
     matrix: list[float]
     shift: list[float]
+    origin: list[float] = field(default_factory=list)
 
 
 class CycleTick(NamedTuple):
@@ -185,6 +186,11 @@ class ChannelBlock:
     spindle_speed: list[float] = field(default_factory=list)
     spindle_acceleration: list[float] = field(default_factory=list)
     spindle_jerk: list[float] = field(default_factory=list)
+    thread_lead: list[float] = field(default_factory=list)
+    thread_set_pitch_error: list[float] = field(default_factory=list)
+    thread_actual_pitch_error: list[float] = field(default_factory=list)
+    thread_set_phase_error_deg: list[float] = field(default_factory=list)
+    thread_actual_phase_error_deg: list[float] = field(default_factory=list)
     line: list[int] = field(default_factory=list)
     block_number: list[int] = field(default_factory=list)
     path_velocity: list[float] = field(default_factory=list)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import cache
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +16,8 @@ from cnc_ptp.wire.stamps import Stamps, Times
 
 OF_THE_BLOCK = ("modulo_begin", "modulo_length", "torque_digits")
 """Scalars of an AxisBlock from which its state messages have positions in the modulo range and digits of the drive."""
+THREAD = "thread_"
+"""Begin of the fields of a ChannelBlock that are those of ThreadState."""
 StateBlock = AxisBlock | SpindleBlock | ChannelBlock
 ALL = slice(None)
 Cycles = npt.NDArray[np.uint64]
@@ -23,14 +26,38 @@ Cycles = npt.NDArray[np.uint64]
 class StateKind:
     """A kind of unit whose blocks hold one state message per cycle: `Axis`, `Spindle` or `Channel`."""
 
+    leaf = "state"
+    """Last part of their topic."""
+
     def __init__(self, name: str) -> None:
         self.state = load_schema(f"cnc_ptp/msg/{name}State")
         self.layout = fixed_layout(self.state)
         names = [field.name for field in self.state.fields if field.name not in ("header", "cycle")]
         held = {field.name for field in load_schema(f"cnc_ptp/msg/{name}Block").fields}
-        self.columns = tuple(name for name in names if name in held)
+        self.columns = {name: name for name in names if name in held}
+        """Field of the state -> field of the block."""
         self.derived = tuple(name for name in names if name not in held)
         """Fields of the state that follow from others of the block."""
+
+    def cycles(self, rows: Records) -> Cycles:
+        """Of the states in blocks (n,)."""
+        return cycles_of(rows)
+
+
+class ThreadKind(StateKind):
+    """The states of threads, which a channel's block holds of the cycles before it."""
+
+    leaf = "thread"
+
+    def __init__(self) -> None:
+        self.state = load_schema("cnc_ptp/msg/ThreadState")
+        self.layout = fixed_layout(self.state)
+        names = [field.name for field in self.state.fields if field.name not in ("header", "cycle")]
+        self.columns = {name: THREAD + name for name in names}
+        self.derived = ()
+
+    def cycles(self, rows: Records) -> Cycles:
+        return cycles_before(rows, rows[f"{THREAD}lead"].shape[1])
 
 
 _KINDS: dict[type, StateKind] = {}
@@ -41,6 +68,17 @@ def kind_of(block_class: type) -> StateKind:
     if kind is None:
         kind = _KINDS[block_class] = StateKind(block_class.__name__.removesuffix("Block"))
     return kind
+
+
+@cache
+def thread_kind() -> ThreadKind:
+    return ThreadKind()
+
+
+def kinds_in(block_class: type, layout: Layout) -> list[StateKind]:
+    """What blocks of this layout hold states of."""
+    kinds = [kind_of(block_class)]
+    return [*kinds, thread_kind()] if f"{THREAD}lead" in (layout.dtype.names or ()) else kinds
 
 
 def block_rows(blocks: Iterable[bytes], layout: Layout) -> Records:
@@ -54,12 +92,18 @@ def cycles_of(rows: Records) -> Cycles:
     return cycles.reshape(-1)
 
 
+def cycles_before(rows: Records, count: int) -> Cycles:
+    """Numbers (n * count,) of the `count` cycles before each of the blocks (n,)."""
+    cycles: Cycles = rows["first_cycle"][:, None] - np.arange(count, 0, -1, dtype=np.uint64)
+    return cycles.reshape(-1)
+
+
 def fill_states(kind: StateKind, messages: Records, rows: Records, cycles: Cycles, stamps_ns: Times) -> None:
     """Sets the state messages (n * count,) of blocks (n,)."""
     set_stamps(messages, stamps_ns)
     messages["cycle"] = cycles
-    for name in kind.columns:
-        messages[name] = rows[name].reshape(-1)
+    for name, column in kind.columns.items():
+        messages[name] = rows[column].reshape(-1)
     if kind.derived:
         fill_derived(messages, rows)
 

@@ -45,6 +45,7 @@ def _of_one_unit(row: PlotRow) -> PlotRow:
 def _rows_by_quantity(
     recorded: Recorded, words: Sequence[str], units: Mapping[str, str], torques: Mapping[str, str]
 ) -> list[PlotRow]:
+    states = _rows_of_units(recorded)
     rows: dict[tuple[str, str], PlotRow] = {}
     for word in words:
         for unit, field in _fields(recorded, word):
@@ -52,7 +53,7 @@ def _rows_by_quantity(
             measure = unit_of(field, units.get(unit, "mm"), torques.get(unit, "Nm or N"))
             row = rows.setdefault((title, measure), PlotRow("", title.replace("_", " "), measure, legend=True))
             name = " ".join(filter(None, [axis_label(unit), role]))
-            row.lines.append(Line(name, recorded.states[f"/{unit}/state"], field, role))
+            row.lines.append(Line(name, states[unit], field, role))
     return list(rows.values())
 
 
@@ -64,7 +65,7 @@ def quantity(field: str) -> tuple[str, str]:
 
 def _fields(recorded: Recorded, word: str) -> Iterator[tuple[str, str]]:
     """Unit and field of a word."""
-    units = {topic.removeprefix("/").removesuffix("/state"): rows for topic, rows in recorded.states.items()}
+    units = _rows_of_units(recorded)
     unit, _, field = word.strip("/").rpartition("/")
     unit = unit.removesuffix("/state")
     if unit:
@@ -78,6 +79,12 @@ def _fields(recorded: Recorded, word: str) -> Iterator[tuple[str, str]]:
         raise _unknown(recorded, f"no field '{field}'", field, _all_names(units))
     still = standing(recorded)
     yield from {name: found for name, found in having.items() if name not in still}.items() or having.items()
+
+
+def _rows_of_units(recorded: Recorded) -> dict[str, Records]:
+    """States by unit; the threads of a channel are `channel/thread`."""
+    units = {topic.removeprefix("/").removesuffix("/state"): rows for topic, rows in recorded.states.items()}
+    return {**units, **{f"{name}/thread": rows for name, rows in recorded.threads.items()}}
 
 
 def _field_of_unit(recorded: Recorded, units: Mapping[str, Records], unit: str, field: str) -> str:

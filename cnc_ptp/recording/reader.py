@@ -24,10 +24,12 @@ from cnc_ptp.wire.schemas import full_name, parse_schema
 AXIS_STATE = "cnc_ptp/msg/AxisState"
 SPINDLE_STATE = "cnc_ptp/msg/SpindleState"
 CHANNEL_STATE = "cnc_ptp/msg/ChannelState"
+THREAD_STATE = "cnc_ptp/msg/ThreadState"
 STATE_TYPES = (AXIS_STATE, SPINDLE_STATE, CHANNEL_STATE)
 TICK = "cnc_ptp/msg/CycleTick"
 EVENT = "cnc_ptp/msg/Event"
 COMMAND = "cnc_ptp/msg/CommandRecord"
+OFFSETS = "cnc_ptp/msg/ChannelOffsets"
 DIAGNOSTICS = "diagnostic_msgs/msg/DiagnosticArray"
 
 
@@ -51,6 +53,20 @@ class Diagnostic(NamedTuple):
     values: dict[str, str]
 
 
+class Coordinates(NamedTuple):
+    """What lies between programmed and machine positions of a channel from a cycle on (a part of ChannelOffsets).
+
+    `axes` by name; `systems`: coordinate systems and kinematics (#FACE, #CYL) by command, `origin` by axis: machine
+    position of the zero point of the kinematics (mm, deg), empty without.
+    """
+
+    cycle: int
+    channel: str
+    axes: tuple[str, ...]
+    systems: tuple[str, ...]
+    origin: tuple[float, ...]
+
+
 class RawMessage(NamedTuple):
     """A message as it lies in the file."""
 
@@ -65,7 +81,8 @@ class Recorded:
     """A recording that was read.
 
     `states[topic]` is a structured array (n,) in the order of the file with the fields of the message (`cycle`,
-    `set_position`, …, `header.stamp.sec`, `header.stamp.nanosec`). `complete` is False when the file was cut off;
+    `set_position`, …, `header.stamp.sec`, `header.stamp.nanosec`), `threads[channel]` one with the cycles of its
+    threads. `complete` is False when the file was cut off;
     `missing` then says what is missing.
     """
 
@@ -77,10 +94,12 @@ class Recorded:
     metadata: dict[str, str] = field(default_factory=dict)
     topics: dict[str, TopicInfo] = field(default_factory=dict)
     states: dict[str, Records] = field(default_factory=dict)
+    threads: dict[str, Records] = field(default_factory=dict)
     ticks: Records | None = None
     events: list[Event] = field(default_factory=list)
     commands: list[CommandRecord] = field(default_factory=list)
     diagnostics: list[Diagnostic] = field(default_factory=list)
+    coordinates: list[Coordinates] = field(default_factory=list)
 
     @property
     def start_ns(self) -> int:
@@ -197,10 +216,11 @@ class _Reader:
         self._layouts: dict[str, Layout] = {}
         self._rows: dict[str, list[npt.NDArray[np.uint8]]] = {}
         self._decoders = DecoderFactory()
-        self._handlers: dict[str, Callable[[int, Any], None]] = {
+        self._handlers: dict[str, Callable[[int, str, Any], None]] = {
             EVENT: self._event,
             COMMAND: self._command,
             DIAGNOSTICS: self._diagnostics,
+            OFFSETS: self._offsets,
         }
 
     def take(self, record: RawRecord) -> None:
@@ -229,11 +249,14 @@ class _Reader:
             self._store(recorded.topics[topic], self._layouts[topic].read(np.concatenate(rows).reshape(-1)))
         recorded.events.sort(key=lambda event: event.cycle)
         recorded.commands.sort(key=lambda command: command.cycle)
+        recorded.coordinates.sort(key=lambda change: change.cycle)
         return recorded
 
     def _store(self, info: TopicInfo, rows: Records) -> None:
         if info.type_name == TICK:
             self.recorded.ticks = rows
+        elif info.type_name == THREAD_STATE:
+            self.recorded.threads[info.topic.removeprefix("/").removesuffix("/thread")] = rows
         else:
             self.recorded.states[info.topic] = rows
 
@@ -243,7 +266,7 @@ class _Reader:
         info.first_ns = int(times.min()) if info.count == 0 else min(info.first_ns, int(times.min()))
         info.last_ns = max(info.last_ns, int(times.max()))
         info.count += len(times)
-        if info.type_name in STATE_TYPES or info.type_name == TICK:
+        if info.type_name in (*STATE_TYPES, THREAD_STATE, TICK):
             self._fixed(info, run, record)
         elif info.type_name in self._handlers:
             self._decode(info, run, record)
@@ -266,7 +289,7 @@ class _Reader:
         handler = self._handlers[info.type_name]
         for time, content in zip(run.head["log_time"].tolist(), run.contents, strict=True):
             try:
-                handler(time, decoder(content.tobytes()) if decoder else None)
+                handler(time, info.topic, decoder(content.tobytes()) if decoder else None)
             except Exception as error:  # whatever the generated decoder raises on bytes that are no such message
                 reason = f"a message of {info.topic} is not a {info.type_name}: {error!r}"
                 raise self.records.corrupt(record.offset, reason) from error
@@ -274,13 +297,13 @@ class _Reader:
     def _schema(self, run: MessageRun) -> Schema:
         return self.names.schemas[self.names.channels[run.channel_id].schema_id]
 
-    def _event(self, _time: int, message: Any) -> None:
+    def _event(self, _time: int, _topic: str, message: Any) -> None:
         values = [EventValue(value.name, value.value, value.unit) for value in getattr(message, "values", ())]
         self.recorded.events.append(
             Event(message.cycle, message.source, message.severity, message.error_id, message.text, message.line, values)
         )
 
-    def _command(self, _time: int, message: Any) -> None:
+    def _command(self, _time: int, _topic: str, message: Any) -> None:
         self.recorded.commands.append(
             CommandRecord(
                 message.cycle,
@@ -294,7 +317,17 @@ class _Reader:
             )
         )
 
-    def _diagnostics(self, time: int, message: Any) -> None:
+    def _diagnostics(self, time: int, _topic: str, message: Any) -> None:
         for status in message.status:
             values = {pair.key: pair.value for pair in status.values}
             self.recorded.diagnostics.append(Diagnostic(time, status.name, values))
+
+    def _offsets(self, _time: int, topic: str, message: Any) -> None:
+        channel = topic.removeprefix("/").removesuffix("/offsets")
+        self.recorded.coordinates.append(coordinates(channel, message))
+
+
+def coordinates(channel: str, offsets: Any) -> Coordinates:
+    """Of ChannelOffsets; those of older recordings have no origin."""
+    origin = tuple(getattr(offsets, "origin", ()))
+    return Coordinates(offsets.cycle, channel, tuple(offsets.axes), tuple(offsets.systems), origin)

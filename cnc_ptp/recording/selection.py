@@ -38,6 +38,7 @@ def selected(
     return replace(
         recorded,
         states={topic: rows for topic, rows in states.items() if len(rows)},
+        threads={name: part for name, rows in recorded.threads.items() if len(part := _between(rows, low, high))},
         events=[event for event in recorded.events if low <= event.cycle <= high],
         commands=[command for command in recorded.commands if low <= command.cycle <= high],
     )

@@ -13,6 +13,8 @@ DISTANCES = (
     "slave_position",
     "slave_offset",
     "following_error",
+    "pitch_error",
+    "lead",
 )
 """`master_position` and `master_offset` have none: their axis is the master, and may be of the other kind."""
 VELOCITIES = (

@@ -15,8 +15,8 @@ import numpy as np
 import numpy.typing as npt
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.protocol.blocks import CycleBlock, PlcBlock
-from cnc_ptp.recording.blocks import Cycles, StateBlock, StateKind, block_rows, cycles_of, fill_states, kind_of
+from cnc_ptp.protocol.blocks import ChannelBlock, CycleBlock, PlcBlock
+from cnc_ptp.recording.blocks import Cycles, StateBlock, StateKind, block_rows, fill_states, kind_of, thread_kind
 from cnc_ptp.recording.reader import Recorded
 from cnc_ptp.recording.writer import topic_of
 from cnc_ptp.wire.block_codec import codec_of
@@ -133,9 +133,9 @@ def verify(recorded: Recorded, replay: Replay) -> VerifyResult:
     """Compares the recorded states with what `replay(recorded)` computes: pairs of unit name (or topic) and block.
 
     PLC blocks among them are passed over, they have no per-cycle states.
-    An older recording may lack fields that are computed today: those that it has are compared, the result names the
-    others. Raises CncError 26004 when the recording has no machine file or its states have fields that are not computed
-    here. Of a file that was cut off, cycles after the last recorded one are not counted as missing.
+    An older recording may lack fields or threads that are computed today: what it has is compared, the result names
+    the others. Raises CncError 26004 when the recording has no machine file or its states have fields that are not
+    computed here. Of a file that was cut off, cycles after the last recorded one are not counted as missing.
     """
     if not recorded.machine_yaml:
         raise CncError(
@@ -144,14 +144,26 @@ def verify(recorded: Recorded, replay: Replay) -> VerifyResult:
             "it cannot be verified, record it with cnc_ptp",
         )
     checks = {topic: _Check(topic, rows, recorded) for topic, rows in recorded.states.items()}
+    threads = {topic_of(name, "thread"): rows for name, rows in recorded.threads.items()}
+    checks |= {topic: _Check(topic, rows, recorded) for topic, rows in threads.items()}
+    without: set[str] = set()
     for name, block in replay(recorded):
         if isinstance(block, PlcBlock):
             continue
         topic = state_topic(name)
         if topic not in checks:
             checks[topic] = _Check(topic, None, recorded)
-        checks[topic].add(block)
-    return VerifyResult(str(recorded.path), {topic: check.finish() for topic, check in checks.items()})
+        checks[topic].add(block, kind_of(type(block)))
+        if isinstance(block, ChannelBlock) and block.thread_lead:
+            check = checks.get(topic_of(topic.removesuffix("/state"), "thread"))
+            if check is None:
+                without.add(topic)
+            else:
+                check.add(block, thread_kind())
+    results = {topic: check.finish() for topic, check in checks.items()}
+    for topic in without:
+        results[topic].not_recorded.append(topic_of(topic.removesuffix("/state"), "thread"))
+    return VerifyResult(str(recorded.path), results)
 
 
 def state_topic(name: str) -> str:
@@ -177,13 +189,14 @@ class _Check:
         self.batch: list[bytes] = []
         self.form: tuple[StateKind, Layout] | None = None
 
-    def add(self, block: StateBlock) -> None:
+    def add(self, block: StateBlock, states: StateKind) -> None:
+        """`states`: which ones of the block."""
         codec = codec_of(type(block))
         data = codec.encode(block, self.stamps)
         layout = codec.layout(data)
         if self.form is None or self.form[1] is not layout:
             self.compare_batch()
-            self.form = kind_of(type(block)), layout
+            self.form = states, layout
             self.require_fields(self.form[0])
         self.batch.append(data)
         if len(self.batch) >= BATCH_BLOCKS:
@@ -212,7 +225,7 @@ class _Check:
             return
         kind, layout = self.form
         rows, self.batch = block_rows(self.batch, layout), []
-        cycles = cycles_of(rows)
+        cycles = kind.cycles(rows)
         computed = np.zeros(len(cycles), dtype=kind.layout.dtype)
         computed["cycle"] = cycles
         fill_states(kind, computed, rows, cycles, self.stamps.at_all(cycles))

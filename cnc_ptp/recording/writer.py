@@ -6,6 +6,8 @@ passed.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from itertools import groupby
 from pathlib import Path
 from types import TracebackType
@@ -16,7 +18,7 @@ import numpy as np
 from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import ChannelBlock, CommandRecord, CycleBlock, CycleTick, Event, PlcBlock
 from cnc_ptp.recording.bag import QOS, TYPE_HASH
-from cnc_ptp.recording.blocks import StateKind, block_rows, cycles_of, fill_states, kind_of
+from cnc_ptp.recording.blocks import StateKind, block_rows, fill_states, kind_of, kinds_in
 from cnc_ptp.recording.mcap_file import HEAD_SIZE, McapFile
 from cnc_ptp.recording.qos import offered, profiles_text
 from cnc_ptp.wire.block_codec import codec_of, head_of, with_plain_header
@@ -51,7 +53,7 @@ class _States:
     def messages(self, collected: list[bytes], stamps: Stamps) -> list[tuple[Bytes, Times]]:
         states = self.kind.layout
         rows = block_rows(collected, self.layout)
-        cycles = cycles_of(rows)
+        cycles = self.kind.cycles(rows)
         times = stamps.at_all(cycles)
         raw = repeat(ROOM + states.template, len(cycles))
         fill_states(self.kind, raw[:, HEAD_SIZE:].view(states.dtype)[:, 0], rows, cycles, times)
@@ -99,28 +101,31 @@ class _Topic:
 class _Unit:
     """Where the blocks of a unit go, and those of its states that come from blocks of the newest layout."""
 
-    def __init__(self, block_class: type, blocks: _Topic, states: _Topic | None) -> None:
-        self._codec = codec_of(block_class)
+    def __init__(self, block_class: type, blocks: _Topic, states: Callable[[StateKind], _Topic] | None) -> None:
+        """`states`: the topic of a kind of states; None for blocks without any."""
+        self._class, self._codec = block_class, codec_of(block_class)
         self._blocks = blocks
         self._states = states
-        self._kind = kind_of(block_class) if states else None
-        self._encoder: _States | None = None
+        self._layout: Layout | None = None
+        self._encoders: list[tuple[_Topic, _States]] = []
 
     def add(self, stamp_ns: int, data: bytes, layout: Layout | None) -> None:
         """Takes a block for both topics, without the bytes that DDS has filled it up with.
 
         `layout`: where its numbers lie, if that is known.
         """
-        if self._states is None or self._kind is None:
+        if self._states is None:
             self._blocks.add(READY, (stamp_ns, data))
             return
         if layout is None:
             layout = self._codec.layout(data)
             data = data[: layout.dtype.itemsize]
         self._blocks.add(READY, (stamp_ns, data))
-        if self._encoder is None or self._encoder.layout is not layout:
-            self._encoder = _States(self._kind, layout)
-        self._states.add(self._encoder, data)
+        if self._layout is not layout:
+            self._layout = layout
+            self._encoders = [(self._states(kind), _States(kind, layout)) for kind in kinds_in(self._class, layout)]
+        for topic, encoder in self._encoders:
+            topic.add(encoder, data)
 
 
 class Recording:
@@ -252,11 +257,14 @@ class Recording:
 
     def _unit(self, name: str, block_class: type) -> _Unit:
         blocks = self._topic(topic_of(name, "block"), f"cnc_ptp/msg/{block_class.__name__}")
-        states = None
-        if block_class is not PlcBlock:
-            states = self._topic(topic_of(name, "state"), kind_of(block_class).state.name)
+        states = None if block_class is PlcBlock else partial(self._states_topic, name)
+        if states is not None:
+            states(kind_of(block_class))
         unit = self._units[name, block_class] = _Unit(block_class, blocks, states)
         return unit
+
+    def _states_topic(self, name: str, kind: StateKind) -> _Topic:
+        return self._topic(topic_of(name, kind.leaf), kind.state.name)
 
     def _single(self, topic: str, type_name: str, value: Any) -> None:
         self._require_open(topic)

@@ -48,6 +48,7 @@ _SHAPES: dict[type, Callable[[Any], Hashable]] = {
             len(block.programmed_position),
             *block.path_spindles,
             len(block.spindle_travel),
+            len(block.thread_lead),
         )
     ),
 }
@@ -182,6 +183,8 @@ class BlockCodec:
                 expected = setpoints if field.name.startswith("set_") else block.count
                 if of_channel and field.name.startswith("spindle_"):
                     expected = block.count * len(block.path_spindles)
+                elif of_channel and field.name.startswith("thread_"):
+                    expected = len(block.thread_lead)
                 if len(getattr(block, field.name)) != expected:
                     return field.name
         return ""

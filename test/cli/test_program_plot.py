@@ -214,3 +214,33 @@ def test_a_recording_without_its_program_has_a_path_all_the_same(recorded: Recor
     assert "programmed" not in program_page.path_note(run)
     recorded.machine_yaml = ""
     assert run_of(recorded).machine is None
+
+
+FACE = """%FACE
+G00 G90 X30 Z100
+M19 S.POS=0 S200
+#CAX [S, C]
+#FACE [X, C]
+G01 X20 C0 F2000
+X0 C20
+#FACE OFF
+#CAX OFF
+M30
+"""
+
+
+def test_face_machining_is_drawn_in_its_coordinates(tmp_path: Path) -> None:
+    program, page = tmp_path / "face.nc", tmp_path / "face.html"
+    program.write_text(FACE)
+    result = call("plot", program, "--machine", "examples/lathe_c.yaml", "-o", page)
+    assert result.exit_code == 0, result.output
+    text = page.read_text()
+    assert "<h2>Front face</h2>" in text
+    assert "Set positions in Cartesian coordinates of the face" in text
+    assert "<h2>Lateral surface" not in text
+
+
+def test_programs_without_kinematics_have_no_such_section(folder: Path, tmp_path: Path) -> None:
+    page = tmp_path / "square.html"
+    assert call("plot", folder / "square.nc", "--machine", MILL, "-o", page).exit_code == 0
+    assert "Front face" not in page.read_text()

@@ -4,7 +4,7 @@ import pytest
 
 from cnc_ptp.protocol.commands import COMMANDS
 from cnc_ptp.recording.command_words import argument_words
-from cnc_ptp.recording.reader import STATE_TYPES
+from cnc_ptp.recording.reader import STATE_TYPES, THREAD_STATE
 from cnc_ptp.recording.units import BY_NAME, BY_SUFFIX, MODULO, unit_of, without_role
 from cnc_ptp.wire.schemas import load_schema
 
@@ -15,7 +15,8 @@ NUMBERS = {
     for name, argument in arguments.items()
     if argument.kind == "number"
 }
-FIELDS = {field.name: field.type for type_name in STATE_TYPES for field in load_schema(type_name).fields}
+TYPES = (*STATE_TYPES, THREAD_STATE)
+FIELDS = {field.name: field.type for type_name in TYPES for field in load_schema(type_name).fields}
 RATIOS = {"factor", "factor_num", "factor_den", "master_scaling", "slave_scaling"}
 OF_THE_MASTER = {"master_position", "master_offset"}
 OF_AN_AXIS_BY_NAME = {"value"}

@@ -83,7 +83,7 @@ SAMPLES = [
         "plc_acknowledged",
         "refused",
     )
-    and not (unit == "channel" and field.startswith("set_"))
+    and not (unit == "channel" and field.startswith(("set_", "thread_")))
 ]
 
 

@@ -211,10 +211,11 @@ def states_equal(first, second):
     """Topics and fields in which two recordings differ, header stamps (wall time) left out."""
     a, b = read_recording(first), read_recording(second)
     assert a.complete and b.complete
-    assert a.states.keys() == b.states.keys()
+    first_rows, second_rows = ({**each.states, **each.threads} for each in (a, b))
+    assert first_rows.keys() == second_rows.keys()
     differing = []
-    for topic, rows in a.states.items():
-        other = b.states[topic]
+    for topic, rows in first_rows.items():
+        other = second_rows[topic]
         assert len(rows) == len(other), f"{topic}: {len(rows)} and {len(other)} cycles"
         for name in rows.dtype.names:
             if not name.startswith("header") and rows[name].tobytes() != other[name].tobytes():

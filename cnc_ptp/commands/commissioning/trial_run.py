@@ -21,7 +21,7 @@ from cnc_ptp.machine.offline import OfflineMachine, Outputs
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.plc.scenario import Entry
-from cnc_ptp.protocol.blocks import CommandRecord, Event, PlcBlock
+from cnc_ptp.protocol.blocks import ChannelBlock, ChannelOffsets, CommandRecord, Event, PlcBlock
 from cnc_ptp.protocol.notes import Note
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.recording.writer import Recording
@@ -31,12 +31,14 @@ Columns = Mapping[str, npt.NDArray[np.float64]]
 
 @dataclass
 class Trial:
-    """A run: its columns by unit and field (one value per cycle), its notes, and all commands and events."""
+    """A run: its columns by unit and field (one value per cycle), its notes, and all commands, events and offsets."""
 
     columns: dict[str, Columns] = field(default_factory=dict)
     result: Result = field(default_factory=Result)
     records: list[CommandRecord] = field(default_factory=list)
     events: list[Event] = field(default_factory=list)
+    offsets: list[tuple[str, ChannelOffsets]] = field(default_factory=list)
+    """With the channel."""
 
     @property
     def refusals(self) -> list[Note]:
@@ -81,9 +83,11 @@ def run_trial(
         for outputs in offline.run():
             trial.result.add(outputs)
             _keep(kept, fields, outputs)
-            for output in outputs.values():
+            for unit, output in outputs.items():
                 trial.records += output.records
                 trial.events += output.events
+                if isinstance(output.block, ChannelBlock):
+                    trial.offsets += [(unit, offsets) for offsets in output.block.offsets]
             progress.show(outputs)
             if recording is not None:
                 write(recording, outputs)

@@ -19,13 +19,21 @@ from cnc_ptp.plots.path_figures import path_axes
 from cnc_ptp.plots.program_page import program_page
 from cnc_ptp.plots.program_run import program_run
 from cnc_ptp.protocol.blocks import Command
-from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, Recorded, TopicInfo
+from cnc_ptp.recording.reader import (
+    AXIS_STATE,
+    CHANNEL_STATE,
+    SPINDLE_STATE,
+    Recorded,
+    TopicInfo,
+    coordinates,
+)
 from cnc_ptp.recording.selection import NOT_RECORDED
 from cnc_ptp.recording.statistics import axis_units
 from cnc_ptp.wire.layout import Records
 
 AXIS_FIELDS = ("set_position", "set_velocity", "set_acceleration", "set_jerk", "state")
 CHANNEL_FIELDS = ("path_velocity", "programmed_feed", "distance_to_go", "line", "block_number", "state")
+SPINDLE_FIELDS = ("set_position_deg", "state")
 WHOLE_NUMBERS = {"cycle": "u8", "line": "u4", "block_number": "u4", "state": "u1"}
 NOTHING = "nothing was drawn"
 
@@ -54,7 +62,9 @@ def plot_program(
         raise CncError(BAD_OVERRIDE, limit, NOTHING)
     job.insert(1, Entry(0.0, Command(channel.name, "set_override", {"percent": override})))
     nodes = [axis.node for axis in channel.axes]
+    c_axis = [entry.node for entry in channel.spindles if channel.c_axis and entry.name == channel.main_spindle]
     fields = {channel.name: CHANNEL_FIELDS, **dict.fromkeys(nodes, AXIS_FIELDS)}
+    fields |= dict.fromkeys(c_axis, SPINDLE_FIELDS)
     trial = run_trial(parameters, job, fields=fields, seconds=0.0, label=Path(program).name)
     if trial.failed:
         trial.print_faults()
@@ -78,10 +88,18 @@ def as_recorded(parameters: MachineParameters, machine: str, program: str, trial
     recorded.metadata["cycle_time_ns"] = str(parameters.cycle_time_us * 1000)
     recorded.commands, recorded.events = trial.records, trial.events
     for unit, columns in trial.columns.items():
-        topic, kind = f"/{unit}/state", CHANNEL_STATE if unit in parameters.channels else AXIS_STATE
+        topic, kind = f"/{unit}/state", kind_of(unit, parameters)
         recorded.states[topic] = records_of(columns)
         recorded.topics[topic] = TopicInfo(topic, kind, len(columns["cycle"]))
+    recorded.coordinates = [coordinates(channel, offsets) for channel, offsets in trial.offsets]
     return recorded
+
+
+def kind_of(unit: str, parameters: MachineParameters) -> str:
+    """Type of the states of a unit."""
+    if unit in parameters.channels:
+        return CHANNEL_STATE
+    return SPINDLE_STATE if unit in parameters.spindles else AXIS_STATE
 
 
 def records_of(columns: Columns) -> Records:

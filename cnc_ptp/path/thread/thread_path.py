@@ -48,6 +48,7 @@ from cnc_ptp.path.thread.thread_check import (
     words_of,
 )
 from cnc_ptp.path.thread.thread_geometry import ThreadGeometry
+from cnc_ptp.path.thread.thread_place import ThreadPlace
 from cnc_ptp.protocol.blocks import CycleBlock, Severity
 
 THREAD_BEGINS = 22085
@@ -235,6 +236,7 @@ class ThreadPath(ActiveMotion):
     def follow(self, count: int) -> list[PathPoint]:
         """As every motion. Raises CncError 22080 … 22084 for a thread that cannot be begun."""
         points: list[PathPoint] = []
+        self.places = []
         self._renew()
         while len(points) < count:
             state = self._pending or self._next(self._cycle + 1)
@@ -247,7 +249,17 @@ class ThreadPath(ActiveMotion):
             self._cycle += 1
             self._state = state
             points.append(self._point(state))
+            self.places.append(self._place(state, points[-1][0]))
         return points
+
+    def _place(self, state: MotionState, axes: Sequence[AxisState]) -> ThreadPlace | None:
+        """The angle of the spindle is that of φ, turned back by its direction, the zero passage and OFFSET."""
+        if self.phase is not Phase.FOLLOWS or self._retract is not None or state[1] < STANDS:
+            return None
+        axis = words_of(self._motions[self._block_of(state[0])]).axis
+        lead = self._sign * TURN * axes[axis][1] / state[1]
+        angle = self._sign * (state[0] + self._zero) + self._words.offset
+        return ThreadPlace(self._spindle.node, axis, axes[axis][0], lead, angle)
 
     def _point(self, state: MotionState) -> PathPoint:
         geometry = self._geometry
