@@ -121,7 +121,7 @@ def test_manual_block_gives_the_spindle_back_at_its_end() -> None:
 
 def test_homes_before_without_a_reference() -> None:
     spindle = replace(LATHE.spindles["s"], referenced_at_start=False)
-    bench = run("#CAX\nG01 C20 F6000\nM30\n", machine=replace(LATHE, spindles={"s": spindle}))
+    bench = run("#CAX\nG01 C20 F6000\nM30\n", machine=replace(LATHE, spindles={**LATHE.spindles, "s": spindle}))
     assert bench.events == []
     assert bench.column("s", "referenced")[-1]
     assert bench.blocks["channel"][-1].programmed_position[2] == pytest.approx(20.0)
@@ -129,7 +129,7 @@ def test_homes_before_without_a_reference() -> None:
 
 def test_no_reference_and_no_automatic_homing() -> None:
     spindle = replace(LATHE.spindles["s"], referenced_at_start=False, automatic_homing=False)
-    bench = run("#CAX\nM30\n", machine=replace(LATHE, spindles={"s": spindle}))
+    bench = run("#CAX\nM30\n", machine=replace(LATHE, spindles={**LATHE.spindles, "s": spindle}))
     assert bench.errors() == [
         "P-ERR-22120 channel channel: spindle s has no reference point and does not home automatically (P-AXIS-00015"
         " 0x100); home it before #CAX (G74 S1) in test.nc line 1 '#CAX'; the path stops on its ramp and the program is aborted"
