@@ -238,11 +238,7 @@ class ProgramSequence:
 
     def _spindle_follows(self, tap: Tap) -> bool:
         """The spindle is an axis of the path; it is asked to become one. Raises CncError 22060."""
-        spindle, asked = self._path_spindle, self._path_spindle.active
-        follows = spindle.ready(tap.spindle)
-        if spindle.active and not asked:
-            self._motion.take_spindle()
-        return follows
+        return self._path_spindle.ready(tap.spindle)
 
     @property
     def cuts(self) -> bool:
