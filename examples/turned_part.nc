@@ -1,6 +1,6 @@
 %L SAFE
-; where tools are changed: X first, then Z, in machine positions, without a tool
-N10 G90 D0
+; where tools are changed: X first, then Z, in machine positions, without a tool; X is a radius from here on
+N10 G90 G52 D0
 N20 #MCS ON
 N30 G00 X190
 N40 Z380
@@ -28,11 +28,11 @@ N80 G90 M29
 %TURNED_PART
 ; A screwed fitting from a bar of 50 mm, which is 3 mm too long. Zero is its face, 100 mm in front of the spindle.
 N10 V.G.NP[1].V.Z = 100
-N20 G54 G18 G90 G51
+N20 G54 G18 G90
 
 ; 1 the face, with a cutting speed of 180 m/min
 N100 LL SAFE
-N110 T1 D1 M03 S800
+N110 G51 T1 D1 M03 S800
 N120 G95 F0.25
 N130 G00 X54 Z3
 N140 G196 S3000
@@ -50,7 +50,7 @@ N260 G00 X60
 
 ; 3 the contour, by a tool with a nose of 0.4 mm on the right of it
 N300 LL SAFE
-N310 T4 D4 S220 F0.1
+N310 G51 T4 D4 S220 F0.1
 N320 G00 X12 Z2
 N330 G42 G01 X16 Z1
 N340 X20 Z-1
@@ -67,14 +67,14 @@ N440 G97
 
 ; 4 the thread M30x2
 N500 LL SAFE
-N510 T5 D5 S600
+N510 G51 T5 D5 S600
 N520 G00 X40 Z-2
 N530 L CYCLE [NAME=threading.nc @X=15 @Z=-30 @LEAD=2 @DEPTH=1.23 @FIRST=0.35 @ANGLE=29.5 @SPRING=1 @CHAMFER=2.5]
 
 ; from here on driven tools work, X is a radius and F is in mm/min
 ; 5 two cross holes: drilled in step 5, the C axis turns the workpiece, and tapped M6 in step 6
 N600 LL SAFE
-N610 G52 G94 M05
+N610 G94 M05
 N620 T9 D9 S2[M03 REV2500]
 N630 M19 S.POS=0 S200
 N640 G00 Z-42
@@ -114,7 +114,7 @@ N1010 #CYL OFF
 N1020 #CAX OFF
 N1030 S2[M05]
 
-; 8 a hexagon of 16 mm across its flats on the end of 20 mm: path of the centre of a mill of 6 mm
+; 8 a hexagon of 16 mm across its flats on the end of 20 mm, by a mill of 6 mm on the left of it
 N1100 LL SAFE
 N1110 T8 D8 S2[M03 REV4000]
 N1120 M19 S.POS=0 S200
@@ -122,17 +122,18 @@ N1130 G00 X25
 N1140 Z2
 N1150 #CAX [S, C]
 N1160 #FACE [X, C]
-N1165 P1 = 11
-N1170 P2 = 11 / SQRT[3]
-N1180 G00 X[P1] C-18
+N1170 P1 = 8 / SQRT[3]
+N1180 G00 X16 C16
 N1190 Z-5
-N1200 G01 C[P2] F400
-N1210 X0 C[2 * P2]
-N1220 X[-P1] C[P2]
-N1230 C[-P2]
-N1240 X0 C[-2 * P2]
-N1250 X[P1] C[-P2]
-N1260 C18
+N1200 G41 G01 X8 C[1.5 * P1] F400
+N1210 C[-P1]
+N1220 X0 C[-2 * P1]
+N1230 X-8 C[-P1]
+N1240 C[P1]
+N1250 X0 C[2 * P1]
+N1260 X8 C[P1]
+N1263 C0
+N1266 G40 X16 C-8
 N1270 G00 Z10
 N1280 #FACE OFF
 N1290 #CAX OFF

@@ -60,7 +60,9 @@ def test_the_spindle_is_an_axis_of_the_path_and_a_spindle_again() -> None:
 
 def test_the_c_axis_begins_where_it_stands_each_time() -> None:
     """Nothing is left of the travel of the time before, whatever comes next: another #CAX, a kinematics, tapping."""
-    again = "G00 X30 Z5\n#CAX\nG00 C75\n#CAX OFF\nM19 S.POS=0\n#CAX\n#FACE [X, C]\nG01 X20 C10 F3000\n#FACE OFF\n#CAX OFF"
+    again = (
+        "G00 X30 Z5\n#CAX\nG00 C75\n#CAX OFF\nM19 S.POS=0\n#CAX\n#FACE [X, C]\nG01 X20 C10 F3000\n#FACE OFF\n#CAX OFF"
+    )
     bench = run(f"{again}\nM19 S.POS=0\nG63 Z-5 F500 S500\nZ5 S-500\nM30\n")
     assert bench.events == []
     assert_limits_of_s(bench)
