@@ -19,6 +19,7 @@ SUBJECTS = {
     "slave": "[Slave axes](slaves.md)",
     "control": "[Position control](control.md)",
     "spindle": "[Spindles](spindles.md)",
+    "turning": "[Turning](turning.md)",
 }
 """First word of the file name, and the page that explains the figure."""
 

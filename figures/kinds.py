@@ -16,6 +16,7 @@ from figures import (
     spindle_and_path,
     spindle_curve,
     spindle_states,
+    turned_part,
     weights,
 )
 from figures.run import FigureRun
@@ -32,6 +33,7 @@ KINDS: Mapping[str, Callable[[FigureScenario, FigureRun], Figure]] = {
     "gear_ranges": gear_ranges.draw,
     "over_path": over_path.draw,
     "corners": corners.draw,
+    "turned_part": turned_part.draw,
 }
 
 

@@ -72,7 +72,7 @@ def working_plane(frame: Frame | None, first: int, second: int) -> WorkingPlane 
 
 
 def column(frame: Frame, axis: int) -> tuple[float, ...]:
-    """Where a programmed millimetre of an axis goes in the machine, one value for each axis. C stays as it is."""
+    """Where a programmed millimetre of an axis goes in the machine, one value for each axis; C is no main axis."""
     if axis not in frame.main:
         return tuple([1.0 if index == axis else 0.0 for index in range(len(frame.shift))])
     place = frame.main.index(axis)
