@@ -18,6 +18,7 @@ from cnc_ptp.nc.flow.lines import Line
 from cnc_ptp.nc.flow.statements import Declarations, Delete, EndOfModalCall, Mark
 from cnc_ptp.nc.program import Channel, HashCommand, ModalState, NcBlock
 from cnc_ptp.nc.spindles import current_main, name_of, names
+from cnc_ptp.nc.tools import tool_commands
 
 Run = Callable[[Channel, ModalState, NcBlock, HashCommand], tuple[Function, ...]]
 
@@ -256,6 +257,8 @@ STATEMENTS: dict[str, Callable[[Line, str, int, int], None]] = {
     "MCS": commands.read_machine_coordinates,
     "PSET": commands.read_preset,
     "PRESET": commands.read_preset,
+    "TOOL DATA": tool_commands.read_tool_data,
+    "TOOL PREP": tool_commands.read_tool_preparation,
     "CONTOUR MODE": transitions.read_contour_mode,
     "HSC": transitions.read_smoothing,
     "COMMENT BEGIN": _comment,
