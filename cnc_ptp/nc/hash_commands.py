@@ -7,7 +7,16 @@ vendor's programming manual.
 import re
 from collections.abc import Callable
 
-from cnc_ptp.nc import c_axis, faults, messages, spindle_faults, spindle_links, transformations, transitions
+from cnc_ptp.nc import (
+    c_axis,
+    faults,
+    messages,
+    spindle_faults,
+    spindle_links,
+    transformations,
+    transitions,
+    turning_faults,
+)
 from cnc_ptp.nc.canonical import AVAILABLE_SLOPES, SLOPES, ExplicitSynchronisation, Function, Timer, WaitForPath
 from cnc_ptp.nc.coordinates import commands
 from cnc_ptp.nc.expressions.nodes import SelfDefined
@@ -134,6 +143,8 @@ def main_spindle(channel: Channel, state: ModalState, block: NcBlock, command: H
             block.source, command.column, spindle=first.own_name, other=name_of(channel, state, key)
         )
     spindle_links.check_main(channel, state, block, command, key)
+    if state.turning.facing >= 0 and key != current_main(channel, state).key:
+        raise turning_faults.MAIN_SPINDLE.at(block.source, command.column)
     state.spindle.main = key
     return ()
 

@@ -11,7 +11,15 @@ from typing import Final
 
 from cnc_ptp.errors import Value
 from cnc_ptp.nc import faults, turning_faults
-from cnc_ptp.nc.canonical import CircularMove, CuttingSpeed, FeedPerTurn, Function, LinearMove, number
+from cnc_ptp.nc.canonical import (
+    CircularMove,
+    CuttingSpeed,
+    FeedPerTurn,
+    Function,
+    LanguageWarning,
+    LinearMove,
+    number,
+)
 from cnc_ptp.nc.coordinates.placement import PLANE_AXES
 from cnc_ptp.nc.functions import block_functions
 from cnc_ptp.nc.gears import speed_range
@@ -28,6 +36,8 @@ FEET_PER_MINUTE: Final = 304.8 / 60.0
 """mm/s"""
 SMALLEST_RADIUS: Final = 0.001
 """mm; nearer to the turning centre the speed is that of this radius, if nothing limits it."""
+ROUNDING: Final = 1e-9
+"""Part of a speed."""
 
 
 # diameters
@@ -197,8 +207,19 @@ def _take_cutting_speed(channel: Channel, state: ModalState, block: NcBlock) -> 
         rpm = speed_at(state, main, state.programmed[modal.facing], any_gear=main.automatic)
         state.speeds[main.key] = rpm
         if value is not None:
-            block = _with_rpm(channel, block, rpm)
+            block, told = _with_rpm(channel, block, rpm), told + _limited(channel, state, main, rpm)
     return block, told
+
+
+def _limited(channel: Channel, state: ModalState, main: Spindle, rpm: float) -> tuple[Function, ...]:
+    """The warning 20633 for a start so near to the turning centre that the cutting speed is not reached."""
+    radius = abs(state.programmed[state.turning.facing])
+    if rpm >= rpm_at(state.turning.speed, radius) * (1.0 - ROUNDING):
+        return ()
+    axis, most = channel.axes[state.turning.facing], number(round(rpm, 3))
+    place = f"axis {axis} is {number(round(radius, 4))} mm from the turning centre"
+    text = f"{place}: spindle {main.key} turns at {most} rpm (G196, P-AXIS-00212), slower than the cutting speed needs"
+    return (LanguageWarning(turning_faults.SPEED_LIMITED, text),)
 
 
 def _refuse_positioning(channel: Channel, block: NcBlock) -> None:

@@ -1,5 +1,7 @@
 """Faults of turning (G51, G95, G96, G196); numbers as in faults.py, our own from 21720."""
 
+from typing import Final
+
 from cnc_ptp.nc.faults import Fault
 
 NO_FACING_AXIS = Fault(20042, "{g} without a facing axis in the plane {plane} (P-AXIS-00015 0x40)")
@@ -21,3 +23,7 @@ NEGATIVE_DIAMETER = Fault(21721, "diameter {axis}{value} is negative")
 LIMIT_TOO_LATE = Fault(21722, "G196 S{value} must be in a block before G96; beside G96 it is written G196={value}")
 LIMIT_MISSING = Fault(21723, "G196 without a speed, as in G196 S2500 or G196=2500")
 PLC_SPINDLE = Fault(21724, "{g} needs a spindle that the NC moves, the PLC controls {spindle} (P-CHAN-00069)")
+MAIN_SPINDLE = Fault(21725, "#MAIN SPINDLE while the cutting speed is constant (G96): G97 before it")
+
+SPEED_LIMITED: Final = 20633
+"""Number of the warning at S of G96."""
