@@ -29,6 +29,7 @@ from cnc_ptp.nc.spindles import current_main, require_spindle
 CONSTANT: Final = 96
 SPEED: Final = 97
 LARGEST: Final = 196
+LARGEST_ISO: Final = 50
 GROUP: Final = "cutting speed"
 LIMIT_GROUP: Final = "largest speed"
 M_PER_MINUTE: Final = 1000.0 / 60.0
@@ -152,7 +153,7 @@ def functions(channel: Channel, state: ModalState, block: NcBlock) -> tuple[Func
     """Those of the block, with S as the turning functions mean it."""
     numbers = [code.number for code in block.codes]
     told: tuple[Function, ...] = ()
-    if LARGEST in numbers:
+    if _limit_code(block) is not None:
         block = _take_limit(channel, state, block, with_constant=CONSTANT in numbers)
     if SPEED in numbers:
         told = _constant_off(channel, state)
@@ -161,19 +162,29 @@ def functions(channel: Channel, state: ModalState, block: NcBlock) -> tuple[Func
     return told + (block_functions(channel, state, block) if block.functions else ())
 
 
+def _limit_code(block: NcBlock) -> GCode | None:
+    """G196, in the vocabulary iso G50."""
+    return next((code for code in block.codes if code.group == LIMIT_GROUP), None)
+
+
 def _take_limit(channel: Channel, state: ModalState, block: NcBlock, *, with_constant: bool) -> NcBlock:
-    """G196 S2500, G196=2500: the block without this S. Raises ProgramError 120169, 21722, 21723, 21548."""
-    require_spindle(channel, block, "G196")
-    value = (block.values or {}).get("G196")
+    """G196 S2500, G196=2500, G50 S2500: the block without this S. Raises ProgramError 120169, 21722, 21723, 21548."""
+    code = _limit_code(block)
+    assert code is not None
+    g, in_iso = code.name, code.number == LARGEST_ISO
+    require_spindle(channel, block, g)
+    value = (block.values or {}).get(g)
     if value is None:
         if "S" not in block.words:
-            raise _fault(turning_faults.LIMIT_MISSING, block, "G196")
+            examples = f"{g} S2500" if in_iso else f"{g} S2500 or {g}=2500"
+            raise _fault(turning_faults.LIMIT_MISSING, block, g, g=g, examples=examples)
         value = block.words["S"]
-        if with_constant or state.turning.facing >= 0:
-            raise _fault(turning_faults.LIMIT_TOO_LATE, block, "G196", value=number(value))
+        if with_constant or (state.turning.facing >= 0 and not in_iso):
+            instead = "" if in_iso else f"; beside G96 it is written {g}={number(value)}"
+            raise _fault(turning_faults.LIMIT_TOO_LATE, block, g, g=g, value=number(value), instead=instead)
         block = block._replace(words={word: each for word, each in block.words.items() if word != "S"})
     if value <= 0.0:
-        raise _fault(turning_faults.MAX_SPEED, block, "G196", value=number(value))
+        raise _fault(turning_faults.MAX_SPEED, block, g, value=number(value), g=g)
     state.turning = state.turning._replace(max_rpm=value)
     return block
 
@@ -201,7 +212,7 @@ def _take_cutting_speed(channel: Channel, state: ModalState, block: NcBlock) -> 
         speed = value * (FEET_PER_MINUTE if in_feet else M_PER_MINUTE)
         state.turning = modal._replace(speed=speed)
         told = (CuttingSpeed(main.key, speed, modal.max_rpm, modal.facing),)
-    elif any(code.number == LARGEST for code in block.codes) and modal.speed:
+    elif _limit_code(block) is not None and modal.speed:
         told = (CuttingSpeed(main.key, modal.speed, modal.max_rpm, modal.facing),)
     if state.turning.speed and (value is not None or main.key not in state.spindle.turning):
         rpm = speed_at(state, main, state.programmed[modal.facing], any_gear=main.automatic)
