@@ -11,7 +11,8 @@ from collections.abc import Sequence
 from cnc_ptp.errors import CncError
 from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, LinearMove, Source
 from cnc_ptp.nc.faults import ProgramError
-from cnc_ptp.path.thread.thread_check import ThreadSettings, checked_geometry, words_of
+from cnc_ptp.path.thread.retract import Retract
+from cnc_ptp.path.thread.thread_check import ThreadSettings, checked_geometry, with_retract, words_of
 
 RETRACT_BEYOND_LIMIT = 22089
 Point = tuple[float, ...]
@@ -54,22 +55,22 @@ class ThreadReading:
         speed = abs(words_of(motions[0]).speed) if motions else 0.0
         try:
             if motions:
-                self._require_retract([self._begin, *[motion.target for motion in motions]])
+                settings = with_retract(self._settings, motions[0])
+                self._require_retract(settings.retract, [self._begin, *[motion.target for motion in motions]])
             if speed:
-                checked_geometry(self._settings, self._begin, motions, speed)
+                checked_geometry(settings, self._begin, motions, speed)
         except CncError as error:
             source = self._source
             raise ProgramError(error.number, error.reason, source, source.column("G33"), **error.values) from None
 
-    def _require_retract(self, points: Sequence[Point]) -> None:
+    def _require_retract(self, retract: Retract | None, points: Sequence[Point]) -> None:
         """Raises CncError 22089 if the tool could not leave the thread everywhere."""
-        retract = self._settings.retract
         if retract is None:
             return
         low, high = self._limits[retract.axis]
         ends = [point[retract.axis] + retract.way for point in points]
         for end, limit in ((min(ends), low), (max(ends), high)):
             if end < low or end > high:
-                way = f"axis {retract.name} could not retract by {retract.way:g} mm from the thread (P-CHAN-90027)"
+                way = f"axis {retract.name} could not retract by {retract.way:g} mm from the thread"
                 reason = f"{way}: {end:g} mm lies beyond the soft limit {limit:g} mm"
                 raise CncError(RETRACT_BEYOND_LIMIT, reason, end=end, limit=limit)

@@ -21,7 +21,7 @@ from cnc_ptp.path.lookahead.spans import whole
 from cnc_ptp.path.planner import PLANNERS, Planner
 from cnc_ptp.path.shape import AxisState, without_jerk
 from cnc_ptp.path.thread.retract import Retract
-from cnc_ptp.path.thread.thread_check import ThreadSettings, angle_of
+from cnc_ptp.path.thread.thread_check import ThreadSettings, angle_of, with_retract
 from cnc_ptp.path.thread.thread_path import ThreadPath
 from cnc_ptp.path.transformed_span import require_possible
 from cnc_ptp.protocol.blocks import CycleBlock
@@ -314,7 +314,8 @@ class PathMotion:
 
     def _start_thread(self, motion: LinearMove, spindle: str, source: MotionSource | None) -> None:
         """The thread waits for its spindle from the last cycle on that was given out."""
-        thread = ThreadPath(self._threads, self._spindle_nodes[spindle], motion, self.position, source)
+        settings = with_retract(self._threads, motion)
+        thread = ThreadPath(settings, self._spindle_nodes[spindle], motion, self.position, source)
         thread.released = self._override > 0.0
         thread.begin(self._cycle)
         self.thread, self.feed = thread, motion.feed

@@ -243,6 +243,29 @@ def test_what_ends_a_thread_before_its_end(command, reason, without, retracts):
         assert abs(phases - np.median(phases)).max() * 1.5 / 360.0 < 0.005
 
 
+@pytest.mark.parametrize(("command", "end"), [("X-4", 32.0), ("X[2 * 3]", 42.0), ("Z3", 36.0), ("OFF", 36.0)])
+def test_a_program_says_how_the_tool_leaves_its_threads(command, end):
+    """In a bore towards the centre; the path follows the spindle meanwhile as with the retract of the machine."""
+    bench = cut(f"#THREAD RETRACT {command}\n{THREAD}", "- {at: 3.0, to: channel, do: reset}")
+    axis, way = ("Z", 3.0) if command == "Z3" else ("X", end - 36.0)
+    does = f"axis {axis} retracts by {way:g} mm while the path follows spindle s, then the path stops"
+    if command == "OFF":
+        does = STOPS
+    assert texts(bench, [22087]) == [f"{RESET}; {does}"]
+    assert bench.column("x", "set_position")[-1] == pytest.approx(end, abs=1e-9)
+    whole = cut(THREAD)
+    gone = column(bench, "z", "set_position")[3050:3060] - column(whole, "z", "set_position")[3050:3060]
+    assert abs(gone).max() < 1e-9 or command in ("OFF", "Z3")
+
+
+def test_a_retract_of_the_program_is_for_its_own_threads():
+    """The next program has that of the machine again; a retract of 0 is none."""
+    scenario = "- {at: 3.0, to: channel, do: reset}\n- {at: 4.0, to: channel, do: mdi, text: V.P.A = 1}"
+    assert texts(cut(f"#THREAD RETRACT X0\n{THREAD}", scenario), [22087]) == [f"{RESET}; {STOPS}"]
+    assert refusal("#THREAD RETRACT X-50\n" + THREAD).startswith("22089 test.nc line 5")
+    assert texts(cut(THREAD, scenario), [22087]) == [f"{RESET}; {RETRACTS}"]
+
+
 def test_a_retract_of_an_axis_of_the_thread_keeps_its_limits():
     bench = cut("G33 Z60 X10 K5", "- {at: 1.9, to: channel, do: reset}")
     assert bench.column("x", "set_position")[-1] > 27.0
@@ -335,14 +358,14 @@ def test_a_thread_without_room_is_not_begun(text, machine, error):
         (
             "G00 X196\nG33 Z60 K2\nG33 X194 Z50",
             LATHE,
-            "22089 test.nc line 5 column 1 'G33 Z60 K2': axis X could not retract by 5 mm from the thread"
-            " (P-CHAN-90027): 201 mm lies beyond the soft limit 200 mm",
+            "22089 test.nc line 5 column 1 'G33 Z60 K2': axis X could not retract by 5 mm from the thread:"
+            " 201 mm lies beyond the soft limit 200 mm",
         ),
         (
             "G33 Z60 X-8 K5",
             lathe(thread_retract=-5.0),
-            "22089 test.nc line 4 column 1 'G33 Z60 X-8 K5': axis X could not retract by -5 mm from the thread"
-            " (P-CHAN-90027): -13 mm lies beyond the soft limit -10 mm",
+            "22089 test.nc line 4 column 1 'G33 Z60 X-8 K5': axis X could not retract by -5 mm from the thread:"
+            " -13 mm lies beyond the soft limit -10 mm",
         ),
     ],
 )

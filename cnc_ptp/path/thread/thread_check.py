@@ -52,6 +52,15 @@ class Ramps(NamedTuple):
     run_out: float
 
 
+def with_retract(settings: ThreadSettings, motion: LinearMove) -> ThreadSettings:
+    """Those of a thread that begins with this block: the program may say how the tool leaves it."""
+    words = words_of(motion)
+    if words.retract is None:
+        return settings
+    axis, way = words.retract
+    return settings._replace(retract=Retract(axis, settings.names[axis], way) if way else None)
+
+
 def angle_of(motion: LinearMove) -> float:
     """deg by which the spindle turns in a block of a thread."""
     return words_of(motion).angle
