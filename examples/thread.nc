@@ -1,5 +1,5 @@
 %THREAD (a shaft gets a thread M40x2, two starts of 3 mm and a taper; X is the radius)
-N10 G18 G90 T1 D1
+N10 G18 G90 T5 D5
 N20 M03 S800
 (--- M40x2, depth 1.23: infeed along the flank, two spring passes, 3 mm of chamfer)
 N30 G00 X30 Z146

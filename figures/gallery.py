@@ -21,6 +21,7 @@ SUBJECTS = {
     "spindle": "[Spindles](spindles.md)",
     "thread": "[Threads](threads.md)",
     "caxis": "[C axis](caxis.md)",
+    "turning": "[Turning](turning.md)",
 }
 """First word of the file name, and the page that explains the figure."""
 

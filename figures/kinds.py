@@ -18,6 +18,7 @@ from figures import (
     spindle_states,
     surfaces,
     thread,
+    turned_part,
     weights,
 )
 from figures.run import FigureRun
@@ -36,6 +37,7 @@ KINDS: Mapping[str, Callable[[FigureScenario, FigureRun], Figure]] = {
     "corners": corners.draw,
     "thread": thread.draw,
     "surfaces": surfaces.draw,
+    "turned_part": turned_part.draw,
 }
 
 

@@ -635,9 +635,12 @@ class ChannelUnit(Unit):
             self._fault_in_line(first_cycle, error)
 
     def _read_path_spindle(self, first_cycle: int, feedback: Mapping[str, CycleBlock]) -> None:
-        """The spindle on the path: its override acts on all of it."""
+        """The spindle on the path, whose travel counts from where it follows; its override acts on all of it."""
+        before = self._path_spindle.node
         if self._path_spindle.read(first_cycle):
             self._apply_override()
+        if self._path_spindle.node and not before:
+            self._motion.take_spindle()
 
     @property
     def runs_out(self) -> bool:

@@ -89,11 +89,7 @@ class PathSpindle:
         """
         motion = block.motion
         if isinstance(motion, LinearMove) and motion.tap is not None:
-            asked = self.active
-            follows = self.ready(motion.tap.spindle)
-            if self.active and not asked:
-                path.take_spindle()
-            return follows
+            return self.ready(motion.tap.spindle)
         for function in block.functions:
             if isinstance(function, SpindleAxis) and function.on:
                 if not self.ready(function.spindle, as_axis=True):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import partial
 from math import inf
 from typing import NamedTuple
@@ -10,6 +10,7 @@ from typing import NamedTuple
 from cnc_ptp.axis.faults import HOMING_DISABLED, SOFT_LIMIT_NEGATIVE, SOFT_LIMIT_POSITIVE
 from cnc_ptp.channel.program_start import ProgramStart
 from cnc_ptp.channel.program_times import BlockTimes
+from cnc_ptp.channel.thread_reading import ThreadReading
 from cnc_ptp.control.commands import NO_FRICTION_COMPENSATION
 from cnc_ptp.errors import CncError
 from cnc_ptp.nc.canonical import (
@@ -230,19 +231,29 @@ class ProgramCheck:
         """Up to a homing or a line that reads what only the run knows; a measuring run is taken to reach its end."""
         missing, state = self._names(self.unreferenced_at_start), self.state({}, {}, {})
         found: dict[tuple[str, int], ProgramError] = {}
+        threads = self._thread_reading(self.start, missing)
+
+        def note(check: Callable[[], None], calls: Sequence[str]) -> None:
+            try:
+                check()
+            except ProgramError as error:
+                error.calls = list(calls)
+                found.setdefault((error.file, error.line), error)
+
         try:
             for block in self._interpreted(
                 program, self.start, state, None, set(missing), required=False, checks=False
             ):
-                try:
-                    self._require_block(block, set(missing))
-                except ProgramError as error:
-                    error.calls = list(block.calls)
-                    found.setdefault((error.file, error.line), error)
+                note(partial(self._require_block, block, set(missing)), block.calls)
+                motion = block.motion
+                if isinstance(motion, LinearMove) and motion.thread is not None:
+                    note(partial(self._require_thread, threads.here, motion, motion.thread, block.source), block.calls)
+                note(partial(threads.take, block), block.calls)
                 if isinstance(block.motion, HomeAxes) or reads_the_run(block) or len(found) == MOST_ERRORS:
                     break
         except ProgramError:
             pass  # it is among those that the interpretation has found
+        note(threads.finish, ())
         return list(found.values())
 
     @property
@@ -321,17 +332,27 @@ class ProgramCheck:
         total = 0
         if program.streamed and begin is None:
             return KnownBlocks(blocks, False, None)
+        threads = self._thread_reading(start, self._names(unreferenced))
         for block in self.running(program, start, state, unreferenced, begin, required=required):
             if block is BUSY:
                 continue
             if program.streamed:
                 return KnownBlocks(blocks, False, None)
             total += 1
+            threads.take(block)
             if len(blocks) < self._channel.known_blocks:
                 blocks.append(block)
             if awaits_path(block):
+                threads.finish()
                 return KnownBlocks(blocks, False, None)
+        threads.finish()
         return KnownBlocks(blocks, total == len(blocks), total)
+
+    def _thread_reading(self, start: Sequence[float], unlimited: Collection[str]) -> ThreadReading:
+        """Axes in `unlimited` have no soft limits."""
+        pairs = zip(self._axis_names, self._soft_limits, strict=True)
+        limits = [(-inf, inf) if name in unlimited else limit for name, limit in pairs]
+        return ThreadReading(self._threads, limits, start)
 
     def running(
         self,
@@ -396,7 +417,7 @@ class ProgramCheck:
                 self._require_block(block, missing)
             if missing and required and isinstance(block.motion, (LinearMove, CircularMove)):
                 self._require_references(position, block.motion, block.source, missing)
-            if isinstance(block.motion, LinearMove) and block.motion.thread is not None:
+            if checks and isinstance(block.motion, LinearMove) and block.motion.thread is not None:
                 self._require_thread(position, block.motion, block.motion.thread, block.source)
             if isinstance(block.motion, (LinearMove, CircularMove)):
                 position = block.motion.target

@@ -69,6 +69,7 @@ class Thread(NamedTuple):
     offset   deg from the zero passage of the spindle to the start of the thread
     change   of the lead with each revolution, mm
     speed    of the spindle as far as the program knows it, deg/s, signed; 0.0: not known
+    retract  place of an axis and its way, mm, if the thread is broken off; None: as the machine file says
     """
 
     spindle: str
@@ -78,6 +79,7 @@ class Thread(NamedTuple):
     offset: float = 0.0
     speed: float = 0.0
     change: float = 0.0
+    retract: tuple[int, float] | None = None
 
 
 class FeedPerTurn(NamedTuple):

@@ -135,7 +135,8 @@ def _motion(motion: Motion) -> str:
 def _thread(thread: Thread) -> str:
     turns, offset = number(thread.angle / 360.0), f" offset {number(thread.offset)}" if thread.offset else ""
     change = f" change {number(thread.change)}" if thread.change else ""
-    return f"spindle {thread.spindle} turns {turns} lead {number(thread.lead)}{change}{offset}"
+    retract = "" if thread.retract is None else f" retract {number(thread.retract[1])} by axis {thread.retract[0]}"
+    return f"spindle {thread.spindle} turns {turns} lead {number(thread.lead)}{change}{offset}{retract}"
 
 
 def _numbers(values: tuple[float, ...]) -> str:

@@ -7,7 +7,17 @@ vendor's programming manual.
 import re
 from collections.abc import Callable
 
-from cnc_ptp.nc import c_axis, faults, messages, spindle_faults, spindle_links, transformations, transitions
+from cnc_ptp.nc import (
+    c_axis,
+    faults,
+    messages,
+    spindle_faults,
+    spindle_links,
+    thread_retract,
+    transformations,
+    transitions,
+    turning_faults,
+)
 from cnc_ptp.nc.canonical import AVAILABLE_SLOPES, SLOPES, ExplicitSynchronisation, Function, Timer, WaitForPath
 from cnc_ptp.nc.coordinates import commands
 from cnc_ptp.nc.expressions.nodes import SelfDefined
@@ -18,6 +28,7 @@ from cnc_ptp.nc.flow.lines import Line
 from cnc_ptp.nc.flow.statements import Declarations, Delete, EndOfModalCall, Mark
 from cnc_ptp.nc.program import Channel, HashCommand, ModalState, NcBlock
 from cnc_ptp.nc.spindles import current_main, name_of, names
+from cnc_ptp.nc.tools import tool_commands
 
 Run = Callable[[Channel, ModalState, NcBlock, HashCommand], tuple[Function, ...]]
 
@@ -133,6 +144,8 @@ def main_spindle(channel: Channel, state: ModalState, block: NcBlock, command: H
             block.source, command.column, spindle=first.own_name, other=name_of(channel, state, key)
         )
     spindle_links.check_main(channel, state, block, command, key)
+    if state.turning.facing >= 0 and key != current_main(channel, state).key:
+        raise turning_faults.MAIN_SPINDLE.at(block.source, command.column)
     state.spindle.main = key
     return ()
 
@@ -256,6 +269,9 @@ STATEMENTS: dict[str, Callable[[Line, str, int, int], None]] = {
     "MCS": commands.read_machine_coordinates,
     "PSET": commands.read_preset,
     "PRESET": commands.read_preset,
+    "THREAD RETRACT": thread_retract.read_thread_retract,
+    "TOOL DATA": tool_commands.read_tool_data,
+    "TOOL PREP": tool_commands.read_tool_preparation,
     "CONTOUR MODE": transitions.read_contour_mode,
     "HSC": transitions.read_smoothing,
     "COMMENT BEGIN": _comment,

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 
-from cnc_ptp.nc import c_axis, c_axis_faults, tapping, transformations, turning
+from cnc_ptp.nc import c_axis, tapping, transformations, turning
 from cnc_ptp.nc.arcs import extreme_points
 from cnc_ptp.nc.block_search import BlockSearch
 from cnc_ptp.nc.canonical import (
@@ -23,7 +23,7 @@ from cnc_ptp.nc.canonical import (
 from cnc_ptp.nc.contour import THROUGH
 from cnc_ptp.nc.controls import bracketed_controls
 from cnc_ptp.nc.coordinates.codes import initial_state, select_offset
-from cnc_ptp.nc.coordinates.limits import check_limits, require_within
+from cnc_ptp.nc.coordinates.limits import check_limits
 from cnc_ptp.nc.coordinates.placement import leave_frame, place, refresh
 from cnc_ptp.nc.coordinates.report import offset_report
 from cnc_ptp.nc.expressions import expression_faults
@@ -33,6 +33,7 @@ from cnc_ptp.nc.feeds import timed
 from cnc_ptp.nc.flow.execution import COMPUTES, FOUND, PAUSE, Execution, Limits, with_calls
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.functions import block_functions
+from cnc_ptp.nc.machine_points import machine_points
 from cnc_ptp.nc.measuring import Touch, measures, placed, results
 from cnc_ptp.nc.parser import NO_FILES, parse_all
 from cnc_ptp.nc.program import (
@@ -149,8 +150,7 @@ def interpret(
     execution = Execution(program, values, limits=limits, block_skip=block_skip, search=search)
 
     def check_motion(start: tuple[float, ...], motion: LinearMove | CircularMove, source: Source) -> None:
-        if check_target is not None:
-            _check_move(start, motion, source, check_target)
+        _check_move(start, motion, source, check_target)
 
     compensation = RadiusCompensation(channel, state, check_motion, awaits_path, search, program.main.source)
     yield from compensation.over(_programmed(execution, check_target, recovery, runs=runs))
@@ -323,15 +323,12 @@ def _moved(
     elif motion.target == state.position and not isinstance(motion, CircularMove) and not compensated:
         state.programmed = programmed
         return None
-    kinematics = state.coordinates.kinematics
-    if kinematics is not None:
-        if compensated:
-            raise c_axis_faults.NOT_WITH_KINEMATICS.at(
-                block.source, word=state.radius_compensation.code, command=kinematics.name
-            )
-        motion = motion._replace(kinematics=kinematics)
+    if state.coordinates.kinematics is not None:
+        motion = motion._replace(kinematics=state.coordinates.kinematics)
     if not compensated:
-        _check_placed(channel, state, block, motion, check_target)
+        _check_move(state.position, motion, block.source, check_target)
+        if state.coordinates.limits:
+            check_limits(channel, state.coordinates.limits, state.position, motion, block.source)
     if state.slope:
         motion = motion._replace(slope=state.slope)
     transition = state.once or state.transition
@@ -345,39 +342,6 @@ def _moved(
     if state.turning.speed:
         turning.follow(channel, state, motion)
     return motion
-
-
-def _check_placed(
-    channel: Channel,
-    state: ModalState,
-    block: NcBlock,
-    motion: LinearMove | CircularMove,
-    check_target: CheckTarget | None,
-) -> None:
-    """Soft limits, and limits of the program."""
-    if motion.kinematics is not None:
-        _check_transformed(channel, state, block, motion, check_target)
-        return
-    if check_target is not None:
-        _check_move(state.position, motion, block.source, check_target)
-    if state.coordinates.limits:
-        check_limits(channel, state.coordinates.limits, state.position, motion, block.source)
-
-
-def _check_transformed(
-    channel: Channel,
-    state: ModalState,
-    block: NcBlock,
-    motion: LinearMove | CircularMove,
-    check_target: CheckTarget | None,
-) -> None:
-    """The same for Cartesian targets: soft limits are those of the axes."""
-    points = transformations.check_move(channel, state, block, motion)
-    for point in points if check_target is not None else ():
-        assert check_target is not None
-        check_target(point, block.source)
-    if state.coordinates.limits:
-        require_within(channel, state.coordinates.limits, points[1:], range(len(channel.axes)), block.source)
 
 
 def ends_on_its_own(motion: Motion) -> bool:
@@ -457,12 +421,22 @@ def _require_speed(state: ModalState, motion: Motion | None) -> None:
             raise error
 
 
-def _check_move(start: tuple[float, ...], motion: Motion, source: Source, check_target: CheckTarget) -> None:
-    if isinstance(motion, CircularMove):
-        for point in extreme_points(start, motion):
-            check_target(point, source)
-    if isinstance(motion, (LinearMove, CircularMove)):
-        check_target(motion.target, source)
+def _check_move(
+    start: tuple[float, ...], motion: LinearMove | CircularMove, source: Source, check_target: CheckTarget | None
+) -> None:
+    """Soft limits of the axes, and the way to a Cartesian target (#FACE, #CYL)."""
+    points: list[tuple[float, ...]] = []
+    if motion.kinematics is not None:
+        points = machine_points(start, motion, source)
+    elif check_target is None:
+        return
+    elif isinstance(motion, CircularMove):
+        points = [*extreme_points(start, motion), motion.target]
+    else:
+        points = [motion.target]
+    for point in points if check_target is not None else ():
+        assert check_target is not None
+        check_target(point, source)
 
 
 def check(

@@ -339,6 +339,7 @@ class ThreadState(NamedTuple):
     runs      the last motion was one of G33: another one continues its thread
     changed   what has commanded the spindle since, "" nothing
     stopped   spindles that the program has stopped
+    retract   place of an axis and its way, mm, for threads that are broken off; None: as the machine file says
     """
 
     letter: str = ""
@@ -348,6 +349,7 @@ class ThreadState(NamedTuple):
     runs: bool = False
     changed: str = ""
     stopped: frozenset[str] = frozenset()
+    retract: tuple[int, float] | None = None
 
 
 NO_THREAD: Final = ThreadState()

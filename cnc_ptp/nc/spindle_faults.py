@@ -77,6 +77,8 @@ LINK_RATIO = Fault(
     "ratio {num} / {den} of spindle {spindle}: both must be numbers other than 0, their ratio within"
     " ±{smallest} ... ±{largest}",
 )
+LINK_DENOMINATOR = Fault(21085, "ratio {num} of spindle {spindle} without a denominator")
+LINK_GANTRY = Fault(21086, "gantry coupling (G) of {slave}: path axes cannot be coupled by programs, spindles can")
 LINK_EMPTY = Fault(21079, "coupling group {group} has no coupled pair")
 LINK_NOT_ACTIVE = Fault(21080, "{what} active")
 LINK_ACTIVE = Fault(20472, "coupling group {group} is active and cannot be redefined")

@@ -1,8 +1,8 @@
 """Synchronous operation of spindles: coupling groups are defined, enabled and disabled (TF5200 spindle 2.8.3).
 
-#SET AX LINK [group, slave=master, num, den, ...] defines (without a ratio 1 / 1), #ENABLE AX LINK [group] starts,
-#DISABLE AX LINK [group] ends. Group 0 comes from the channel parameters. Definitions are kept for later programs;
-couplings end with the program.
+#SET AX LINK [group, [slave=master, num, den], ...] defines, also without the inner brackets (without a ratio 1 / 1),
+#ENABLE AX LINK [group] starts, #DISABLE AX LINK [group] ends. Group 0 comes from the channel parameters. Definitions
+are kept for later programs; couplings end with the program.
 """
 
 import re
@@ -17,7 +17,7 @@ from cnc_ptp.nc.program import Channel, HashCommand, ModalState, NcBlock, Pair, 
 from cnc_ptp.nc.spindles import current_main, name_of, names
 from cnc_ptp.spindle.ratio import LARGEST_RATIO, SMALLEST_RATIO, is_permitted
 
-DEFINITION = "[group, slave=master, ...] or [group, slave=master, num, den, ...]"
+DEFINITION = "[group, slave=master, ...] or [group, [slave=master, num, den], ...]"
 _NUMBER = re.compile(NUMBER, re.ASCII)
 
 
@@ -49,18 +49,39 @@ class _Command:
         return name_of(self.channel, self.state, key)
 
     def pairs_of(self, arguments: Sequence[str]) -> Pairs:
-        """`slave=master` by key, each followed by the ratio `num, den` or by none."""
+        """`slave=master` by key, each followed by the ratio `num, den` or by none, or with it in brackets."""
         pairs: list[Pair] = []
         rest = list(arguments)
         while rest:
-            slave, equals, master = rest.pop(0).partition("=")
-            if not equals:
-                raise self.syntax(DEFINITION)
-            pair = Pair(self.spindle(slave.strip()), self.spindle(master.strip()))
+            if rest[0].startswith("["):
+                pairs.append(self._bracketed(rest))
+                continue
+            pair = self._pair(rest.pop(0))
             if rest and "=" not in rest[0]:
                 pair = self._with_ratio(pair, rest)
             pairs.append(pair)
         return tuple(pairs)
+
+    def _pair(self, text: str) -> Pair:
+        """`slave=master`."""
+        slave, equals, master = text.partition("=")
+        if not equals:
+            raise self.syntax(DEFINITION)
+        return Pair(self.spindle(slave.strip()), self.spindle(master.strip()))
+
+    def _bracketed(self, rest: list[str]) -> Pair:
+        """Takes `[slave=master, num, den]` or `[slave=master]` from `rest`."""
+        last = next((index for index, word in enumerate(rest) if word.endswith("]")), -1)
+        words = [word.strip() for word in ",".join(rest[: last + 1])[1:-1].split(",")]
+        del rest[: last + 1]
+        if words[1:2] == ["G"]:
+            raise self.fault(spindle_faults.LINK_GANTRY, slave=words[0].partition("=")[0].strip())
+        if last < 0 or len(words) > 3 or "[" in "".join(words):
+            raise self.syntax(DEFINITION)
+        pair = self._pair(words[0])
+        if len(words) == 2:
+            raise self.fault(spindle_faults.LINK_DENOMINATOR, num=words[1], spindle=self.called(pair.slave))
+        return self._with_ratio(pair, words[1:]) if len(words) == 3 else pair
 
     def _with_ratio(self, pair: Pair, rest: list[str]) -> Pair:
         """Takes two numbers from `rest`."""

@@ -56,7 +56,7 @@ def thread(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> 
     modes, change = state.thread, _change(state, block, code, ways[axis])
     turns = 2.0 * ways[axis] / (modes.pitch + sqrt(modes.pitch**2 + 2.0 * change * ways[axis]))
     spindle, place = current_main(channel, state).key, channel.axis_index[axis]
-    led = Thread(spindle, TURN * turns, modes.pitch, place, modes.offset, change=change)
+    led = Thread(spindle, TURN * turns, modes.pitch, place, modes.offset, change=change, retract=modes.retract)
     return LinearMove(tuple(target), False, 0.0, thread=led)
 
 

@@ -11,7 +11,15 @@ from typing import Final
 
 from cnc_ptp.errors import Value
 from cnc_ptp.nc import faults, turning_faults
-from cnc_ptp.nc.canonical import CircularMove, CuttingSpeed, FeedPerTurn, Function, LinearMove, number
+from cnc_ptp.nc.canonical import (
+    CircularMove,
+    CuttingSpeed,
+    FeedPerTurn,
+    Function,
+    LanguageWarning,
+    LinearMove,
+    number,
+)
 from cnc_ptp.nc.coordinates.placement import PLANE_AXES
 from cnc_ptp.nc.functions import block_functions
 from cnc_ptp.nc.gears import speed_range
@@ -21,6 +29,7 @@ from cnc_ptp.nc.spindles import current_main, require_spindle
 CONSTANT: Final = 96
 SPEED: Final = 97
 LARGEST: Final = 196
+LARGEST_ISO: Final = 50
 GROUP: Final = "cutting speed"
 LIMIT_GROUP: Final = "largest speed"
 M_PER_MINUTE: Final = 1000.0 / 60.0
@@ -28,6 +37,8 @@ FEET_PER_MINUTE: Final = 304.8 / 60.0
 """mm/s"""
 SMALLEST_RADIUS: Final = 0.001
 """mm; nearer to the turning centre the speed is that of this radius, if nothing limits it."""
+ROUNDING: Final = 1e-9
+"""Part of a speed."""
 
 
 # diameters
@@ -142,7 +153,7 @@ def functions(channel: Channel, state: ModalState, block: NcBlock) -> tuple[Func
     """Those of the block, with S as the turning functions mean it."""
     numbers = [code.number for code in block.codes]
     told: tuple[Function, ...] = ()
-    if LARGEST in numbers:
+    if _limit_code(block) is not None:
         block = _take_limit(channel, state, block, with_constant=CONSTANT in numbers)
     if SPEED in numbers:
         told = _constant_off(channel, state)
@@ -151,19 +162,29 @@ def functions(channel: Channel, state: ModalState, block: NcBlock) -> tuple[Func
     return told + (block_functions(channel, state, block) if block.functions else ())
 
 
+def _limit_code(block: NcBlock) -> GCode | None:
+    """G196, in the vocabulary iso G50."""
+    return next((code for code in block.codes if code.group == LIMIT_GROUP), None)
+
+
 def _take_limit(channel: Channel, state: ModalState, block: NcBlock, *, with_constant: bool) -> NcBlock:
-    """G196 S2500, G196=2500: the block without this S. Raises ProgramError 120169, 21722, 21723, 21548."""
-    require_spindle(channel, block, "G196")
-    value = (block.values or {}).get("G196")
+    """G196 S2500, G196=2500, G50 S2500: the block without this S. Raises ProgramError 120169, 21722, 21723, 21548."""
+    code = _limit_code(block)
+    assert code is not None
+    g, in_iso = code.name, code.number == LARGEST_ISO
+    require_spindle(channel, block, g)
+    value = (block.values or {}).get(g)
     if value is None:
         if "S" not in block.words:
-            raise _fault(turning_faults.LIMIT_MISSING, block, "G196")
+            examples = f"{g} S2500" if in_iso else f"{g} S2500 or {g}=2500"
+            raise _fault(turning_faults.LIMIT_MISSING, block, g, g=g, examples=examples)
         value = block.words["S"]
-        if with_constant or state.turning.facing >= 0:
-            raise _fault(turning_faults.LIMIT_TOO_LATE, block, "G196", value=number(value))
+        if with_constant or (state.turning.facing >= 0 and not in_iso):
+            instead = "" if in_iso else f"; beside G96 it is written {g}={number(value)}"
+            raise _fault(turning_faults.LIMIT_TOO_LATE, block, g, g=g, value=number(value), instead=instead)
         block = block._replace(words={word: each for word, each in block.words.items() if word != "S"})
     if value <= 0.0:
-        raise _fault(turning_faults.MAX_SPEED, block, "G196", value=number(value))
+        raise _fault(turning_faults.MAX_SPEED, block, g, value=number(value), g=g)
     state.turning = state.turning._replace(max_rpm=value)
     return block
 
@@ -191,14 +212,25 @@ def _take_cutting_speed(channel: Channel, state: ModalState, block: NcBlock) -> 
         speed = value * (FEET_PER_MINUTE if in_feet else M_PER_MINUTE)
         state.turning = modal._replace(speed=speed)
         told = (CuttingSpeed(main.key, speed, modal.max_rpm, modal.facing),)
-    elif any(code.number == LARGEST for code in block.codes) and modal.speed:
+    elif _limit_code(block) is not None and modal.speed:
         told = (CuttingSpeed(main.key, modal.speed, modal.max_rpm, modal.facing),)
     if state.turning.speed and (value is not None or main.key not in state.spindle.turning):
         rpm = speed_at(state, main, state.programmed[modal.facing], any_gear=main.automatic)
         state.speeds[main.key] = rpm
         if value is not None:
-            block = _with_rpm(channel, block, rpm)
+            block, told = _with_rpm(channel, block, rpm), told + _limited(channel, state, main, rpm)
     return block, told
+
+
+def _limited(channel: Channel, state: ModalState, main: Spindle, rpm: float) -> tuple[Function, ...]:
+    """The warning 20633 for a start so near to the turning centre that the cutting speed is not reached."""
+    radius = abs(state.programmed[state.turning.facing])
+    if rpm >= rpm_at(state.turning.speed, radius) * (1.0 - ROUNDING):
+        return ()
+    axis, most = channel.axes[state.turning.facing], number(round(rpm, 3))
+    place = f"axis {axis} is {number(round(radius, 4))} mm from the turning centre"
+    text = f"{place}: spindle {main.key} turns at {most} rpm (G196, P-AXIS-00212), slower than the cutting speed needs"
+    return (LanguageWarning(turning_faults.SPEED_LIMITED, text),)
 
 
 def _refuse_positioning(channel: Channel, block: NcBlock) -> None:

@@ -18,7 +18,7 @@ from cnc_ptp.path.lookahead.path_builder import LinkedMotion, PathBuilder
 from cnc_ptp.path.lookahead.spans import whole
 from cnc_ptp.path.motion_plan import LimitsOfSpindle, MotionPlanner, Plan
 from cnc_ptp.path.shape import AT_REST, AxisState, AxisStates, standing
-from cnc_ptp.path.thread.thread_check import angle_of, thread_settings
+from cnc_ptp.path.thread.thread_check import angle_of, thread_settings, with_retract
 from cnc_ptp.path.thread.thread_path import ThreadPath
 from cnc_ptp.path.thread.thread_place import ThreadPlace
 from cnc_ptp.path.transformed_span import require_possible
@@ -257,7 +257,8 @@ class PathMotion:
 
     def _start_thread(self, motion: LinearMove, spindle: str, source: MotionSource | None) -> None:
         """The thread waits for its spindle from the last cycle on that was given out."""
-        thread = ThreadPath(self._threads, self._spindle_nodes[spindle], motion, self.position, source)
+        settings = with_retract(self._threads, motion)
+        thread = ThreadPath(settings, self._spindle_nodes[spindle], motion, self.position, source)
         thread.released = self._override > 0.0
         thread.begin(self._cycle)
         self._active, self.feed = thread, thread.feed

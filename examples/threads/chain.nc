@@ -1,5 +1,5 @@
 (One thread of several blocks without a stop: a taper, a cylinder, a coarser pitch, and out of the groove)
-N10 G18 G90 T1 D1
+N10 G18 G90 T5 D5
 N20 G00 X20 Z52 M03 S600
 N30 G33 X22 Z40 K2
 N40 Z20

@@ -6,7 +6,7 @@ N120 Z105 (to the start position)
 N130 M29
 %G33
 N10 G18 G90
-N15 T1 D1 M03 S400 (select tool, start spindle)
+N15 T5 D5 M03 S400 (select tool, start spindle)
 N20 G00 X36 Z105 (approach)
 N25 G01 X34.77 F1000 (first depth)
 N30 LL longit_thread

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import pytest
 from c_axis_support import LATHE, assert_within_limits, errors, on_path, run
@@ -55,6 +56,22 @@ def test_the_spindle_is_an_axis_of_the_path_and_a_spindle_again() -> None:
     assert min(angle[cycle] for cycle in cycles) == pytest.approx(-20.0)
     assert max(bench.column("s", "set_speed_rpm")) == 500.0
     assert (bench.position("x"), bench.position("z")) == (90.0, 50.0)
+
+
+def test_the_c_axis_begins_where_it_stands_each_time() -> None:
+    """Nothing is left of the travel of the time before, whatever comes next: another #CAX, a kinematics, tapping."""
+    again = (
+        "G00 X30 Z5\n#CAX\nG00 C75\n#CAX OFF\nM19 S.POS=0\n#CAX\n#FACE [X, C]\nG01 X20 C10 F3000\n#FACE OFF\n#CAX OFF"
+    )
+    bench = run(f"{again}\nM19 S.POS=0\nG63 Z-5 F500 S500\nZ5 S-500\nM30\n")
+    assert bench.events == []
+    assert_limits_of_s(bench)
+
+
+def assert_limits_of_s(bench: MachineBench) -> None:
+    """No step of the set position in a cycle beyond the speed of the spindle."""
+    angle, most = bench.column("s", "set_position_deg"), LATHE.spindles["s"].gears[1].max_speed
+    assert max(abs(after - before) for before, after in pairwise(angle)) <= most * 0.001
 
 
 def test_limits_of_the_spindle_hold() -> None:
@@ -121,7 +138,7 @@ def test_manual_block_gives_the_spindle_back_at_its_end() -> None:
 
 def test_homes_before_without_a_reference() -> None:
     spindle = replace(LATHE.spindles["s"], referenced_at_start=False)
-    bench = run("#CAX\nG01 C20 F6000\nM30\n", machine=replace(LATHE, spindles={"s": spindle}))
+    bench = run("#CAX\nG01 C20 F6000\nM30\n", machine=replace(LATHE, spindles={**LATHE.spindles, "s": spindle}))
     assert bench.events == []
     assert bench.column("s", "referenced")[-1]
     assert bench.blocks["channel"][-1].programmed_position[2] == pytest.approx(20.0)
@@ -129,7 +146,7 @@ def test_homes_before_without_a_reference() -> None:
 
 def test_no_reference_and_no_automatic_homing() -> None:
     spindle = replace(LATHE.spindles["s"], referenced_at_start=False, automatic_homing=False)
-    bench = run("#CAX\nM30\n", machine=replace(LATHE, spindles={"s": spindle}))
+    bench = run("#CAX\nM30\n", machine=replace(LATHE, spindles={**LATHE.spindles, "s": spindle}))
     assert bench.errors() == [
         "P-ERR-22120 channel channel: spindle s has no reference point and does not home automatically (P-AXIS-00015"
         " 0x100); home it before #CAX (G74 S1) in test.nc line 1 '#CAX'; the path stops on its ramp and the program is aborted"

@@ -104,7 +104,7 @@ def test_two_runs_and_a_replay_are_the_same_bits() -> None:
 
 def test_the_lathe_runs_from_the_text_of_its_recording() -> None:
     """Positions by hand: X82.48 is 20 mm, the offset 62.5 mm and wear of -0.02 mm; Z 100 mm more for G54."""
-    file, program = str(EXAMPLES / "lathe.yaml"), str(EXAMPLES / "lathe.nc")
+    file, program = str(EXAMPLES.parent / "config" / "lathe.yaml"), str(EXAMPLES / "lathe.nc")
     plain = Path(file).read_text(encoding="utf-8")
     recorded = load_machine(complete_text(plain, file), "recording:machine.yaml")
     on_disk = read_machine(file)
@@ -112,15 +112,17 @@ def test_the_lathe_runs_from_the_text_of_its_recording() -> None:
     text = read_entries(recorded, program=program, scenario=None)[0].command.arguments["text"]
     found = [
         ProgramCheck.of_first_channel(each, program).known_blocks(
-            parse_program(text, program), (150.0, 300.0), ProgramCheck.of_first_channel(each, program).state({}, {}, {})
+            parse_program(text, program),
+            (150.0, 300.0, 0.0),
+            ProgramCheck.of_first_channel(each, program).state({}, {}, {}),
         )
         for each in (recorded, on_disk)
     ]
     assert found[0] == found[1]
     targets = [block.motion.target for block in found[0].blocks if block.motion is not None]
-    assert targets[1] == pytest.approx((20.0 + 62.5 - 0.02, 2.0 + 100.0 + 41.0 + 0.01), abs=1e-12)
+    assert targets[1] == pytest.approx((20.0 + 62.5 - 0.02, 2.0 + 100.0 + 41.0 + 0.01, 0.0), abs=1e-12)
     assert targets[2][1] == pytest.approx(-15.0 + 100.0 + 41.0 + 0.01, abs=1e-12)
-    assert targets[-1] == (0.0, pytest.approx(120.0 + 100.0 + 95.4 - 0.1, abs=1e-12))
+    assert targets[-1] == (0.0, pytest.approx(120.0 + 100.0 + 95.4 - 0.1, abs=1e-12), 0.0)
 
 
 def test_the_table_of_the_tests_has_every_kind_of_tool() -> None:

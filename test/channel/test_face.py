@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import random
+from cmath import exp
 from itertools import pairwise
-from math import degrees
+from math import degrees, radians
 
+import numpy as np
 import pytest
+import shapely
 from c_axis_support import (
     LATHE,
     assert_within_limits,
@@ -19,6 +22,7 @@ from c_axis_support import (
 )
 from machine_support import MachineBench
 from replay_support import bits, replay
+from shapely import LinearRing, box
 
 from cnc_ptp.kinematics.cylinder import Cylinder
 from cnc_ptp.kinematics.face import Face
@@ -160,6 +164,39 @@ def test_random_polygons() -> None:
         assert bench.events == []
         assert max(distance(point, [20.0 + 0.0j, *points]) for point in of_face(bench)) < MICROMETRE
         assert_within_limits(bench)
+
+
+def test_radius_of_the_tool_on_the_face() -> None:
+    """G41 around a hexagon with a rounded corner: the centre of the mill is 3 mm beside it, arcs at the corners."""
+    text = "G41 G01 X16 C0 F2000\nX8 C-13.856\nX-8\nX-16 C0\nG02 X-8 C13.856 I16 J0\nG01 X8\nX16 C0\nG40 X24 C8"
+    bench = run(on_face(f"G00 X24 C0\n{text}").replace("#CAX\n", "D8\n#CAX\n", 1))
+    assert bench.events == []
+    arc = [16.0 * exp(1j * radians(angle)) for angle in np.linspace(180.0, 120.0, 2001)]
+    contour = [complex(16, 0), complex(8, -13.856), complex(-8, -13.856), *arc, complex(8, 13.856), complex(16, 0)]
+    part = LinearRing([(point.real, point.imag) for point in contour])
+    path = [point - 55.0 * point / abs(point) for point in face_path(bench)]  # the mill is 55 mm beside the turret
+    lines = [line for block in bench.blocks["channel"] for line in block.line]
+    beside = [point for point, cycle in zip(path, on_path(bench), strict=True) if 7 <= lines[cycle] <= 12]
+    assert len(beside) > 2000
+    away = shapely.distance(part, shapely.points([(point.real, point.imag) for point in beside]))
+    assert abs(away - 3.0).max() < MICROMETRE
+    assert_within_limits(bench)
+
+
+def test_radius_of_the_tool_on_the_cylinder() -> None:
+    """G42 within a window of 12 mm by 20 mm of arc on a cylinder of 30 mm: the mill stays 3 mm within it."""
+    window = "Z2 C0\nC10\nZ14\nC-10\nZ2\nC0\nG40 Z8"
+    text = f"D8\n#CAX\nG00 X40 C0 Z8\n#CYL [Z, C, X30]\nG42 G01 F2000 {window}\n#CYL OFF\n#CAX OFF\nM30\n"
+    bench = run(text)
+    assert bench.events == []
+    length = radians(30.0)
+    path = [(z - 84.0, angle * length) for _, angle, z in machine_path(bench)]
+    lines = [line for block in bench.blocks["channel"] for line in block.line]
+    inside = [point for point, cycle in zip(path, on_path(bench), strict=True) if 6 <= lines[cycle] <= 10]
+    assert len(inside) > 1000
+    away = shapely.distance(box(2.0, -10.0, 14.0, 10.0).exterior, shapely.points(inside))
+    assert abs(away - 3.0).max() < MICROMETRE
+    assert_within_limits(bench)
 
 
 @pytest.mark.parametrize("at", [1.7, 2.1, 2.6])

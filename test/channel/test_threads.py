@@ -10,6 +10,7 @@ import pytest
 from machine_support import MachineBench
 from thread_support import HEAD, LATHE, NO_RETRACT, Pass, apart, assert_within_limits, column, cut, lathe, texts
 
+from cnc_ptp.channel.program_check import ProgramCheck
 from cnc_ptp.protocol.channel_states import ChannelStateCode as C
 
 BACK = "\nG00 X40\nZ105\nX36\n"
@@ -242,6 +243,29 @@ def test_what_ends_a_thread_before_its_end(command, reason, without, retracts):
         assert abs(phases - np.median(phases)).max() * 1.5 / 360.0 < 0.005
 
 
+@pytest.mark.parametrize(("command", "end"), [("X-4", 32.0), ("X[2 * 3]", 42.0), ("Z3", 36.0), ("OFF", 36.0)])
+def test_a_program_says_how_the_tool_leaves_its_threads(command, end):
+    """In a bore towards the centre; the path follows the spindle meanwhile as with the retract of the machine."""
+    bench = cut(f"#THREAD RETRACT {command}\n{THREAD}", "- {at: 3.0, to: channel, do: reset}")
+    axis, way = ("Z", 3.0) if command == "Z3" else ("X", end - 36.0)
+    does = f"axis {axis} retracts by {way:g} mm while the path follows spindle s, then the path stops"
+    if command == "OFF":
+        does = STOPS
+    assert texts(bench, [22087]) == [f"{RESET}; {does}"]
+    assert bench.column("x", "set_position")[-1] == pytest.approx(end, abs=1e-9)
+    whole = cut(THREAD)
+    gone = column(bench, "z", "set_position")[3050:3060] - column(whole, "z", "set_position")[3050:3060]
+    assert abs(gone).max() < 1e-9 or command in ("OFF", "Z3")
+
+
+def test_a_retract_of_the_program_is_for_its_own_threads():
+    """The next program has that of the machine again; a retract of 0 is none."""
+    scenario = "- {at: 3.0, to: channel, do: reset}\n- {at: 4.0, to: channel, do: mdi, text: V.P.A = 1}"
+    assert texts(cut(f"#THREAD RETRACT X0\n{THREAD}", scenario), [22087]) == [f"{RESET}; {STOPS}"]
+    assert refusal("#THREAD RETRACT X-50\n" + THREAD).startswith("22089 test.nc line 5")
+    assert texts(cut(THREAD, scenario), [22087]) == [f"{RESET}; {RETRACTS}"]
+
+
 def test_a_retract_of_an_axis_of_the_thread_keeps_its_limits():
     bench = cut("G33 Z60 X10 K5", "- {at: 1.9, to: channel, do: reset}")
     assert bench.column("x", "set_position")[-1] > 27.0
@@ -303,9 +327,63 @@ NOT_BEGUN = "the thread is not begun and the program is aborted"
     ],
 )
 def test_a_thread_without_room_is_not_begun(text, machine, error):
-    bench = cut(text, machine=machine)
-    assert texts(bench) == [f"{error}; {NOT_BEGUN}"]
+    """The program does not know the speed of a spindle that the PLC has started."""
+    scenario = "- {at: 0, to: s, do: start, speed_rpm: 400, direction: cw}"
+    bench = cut(text, scenario, machine=machine, head=HEAD.replace(" M03 S400", "") + "G04 1\n")
+    assert texts(bench) == [f"{error.replace('line 4', 'line 5')}; {NOT_BEGUN}"]
     assert bench.column("z", "set_position")[-1] == 105.0
+
+
+@pytest.mark.parametrize(
+    ("text", "machine", "error"),
+    [
+        (
+            "G33 Z104.9 K1.5",
+            LATHE,
+            "22083 test.nc line 4 column 1 'G33 Z104.9 K1.5': block 1 of the thread is 0.183 mm too short at 400 rpm:"
+            " run-up 0.141 mm and run-out 0.141 mm need more than its 0.100 mm",
+        ),
+        (
+            "G33 Z100 K1.5\nZ99.99 K3\nZ90 K1.5\nG00 X40",
+            LATHE,
+            "22083 test.nc line 4 column 1 'G33 Z100 K1.5': block 2 of the thread is 1.079 mm too short at 400 rpm:"
+            " joint 0.544 mm and joint 0.544 mm need more than its 0.010 mm",
+        ),
+        (
+            "G33 Z48 K3",
+            lathe(thread_run_up=0.3),
+            "22084 test.nc line 4 column 1 'G33 Z48 K3': the run-up of the thread takes 0.400 mm, 0.100 mm more than"
+            " the 0.3 mm in which it may be out of pitch (P-CHAN-90025)",
+        ),
+        (
+            "G00 X196\nG33 Z60 K2\nG33 X194 Z50",
+            LATHE,
+            "22089 test.nc line 5 column 1 'G33 Z60 K2': axis X could not retract by 5 mm from the thread:"
+            " 201 mm lies beyond the soft limit 200 mm",
+        ),
+        (
+            "G33 Z60 X-8 K5",
+            lathe(thread_retract=-5.0),
+            "22089 test.nc line 4 column 1 'G33 Z60 X-8 K5': axis X could not retract by -5 mm from the thread:"
+            " -13 mm lies beyond the soft limit -10 mm",
+        ),
+    ],
+)
+def test_a_thread_without_room_is_refused_when_the_program_is_read(text, machine, error):
+    """By the start of the program, and by `cnc_ptp check`, which goes on behind it."""
+    assert refusal(text, machine) == error
+    program = f"{HEAD}{text}\nG00 X100\nM30\n"
+    found = ProgramCheck.of_first_channel(machine, "test.nc").errors(program, "test.nc")
+    assert [f"{each.number} {str(each).partition(' ')[2]}" for each in found] == [error]
+
+
+def test_two_threads_are_read_apart():
+    """Each with its own start: what is short in the second one is told of it; without a retract no limit counts."""
+    second = "G33 Z48 K1.5\nG00 X40\nZ105\nX36\nG33 Z104.9 K1.5"
+    assert refusal(second).startswith("22083 test.nc line 8 column 1 'G33 Z104.9 K1.5': block 1 of the thread")
+    offset = "G33 Z90 K1.5\nG33 Z89.9 S.OFFSET=180"
+    assert refusal(offset).startswith("22083 test.nc line 5 column 1 'G33 Z89.9 S.OFFSET=180': block 1 of the thread")
+    assert texts(cut("G00 X199\nG33 Z60 K2", machine=NO_RETRACT), [22089]) == []
 
 
 def test_a_spindle_that_nobody_has_started():
@@ -392,6 +470,9 @@ def test_a_chain_with_leads_that_change():
 
 
 def test_a_lead_that_changes_too_fast():
-    bench = cut("G34 Z95 K2 F6", head=HEAD.replace("S400", "S1500"))
+    """Of a spindle whose speed the program does not know, and when the program is read."""
     change = "a lead that changes by 6 mm per revolution at 1500 rpm needs 3750 mm/s² of axis Z, it may take 600 mm/s²"
-    assert texts(bench) == [f"22088 channel channel: {change} in test.nc line 4 'G34 Z95 K2 F6'; {NOT_BEGUN}"]
+    scenario = "- {at: 0, to: s, do: start, speed_rpm: 1500, direction: cw}"
+    bench = cut("G34 Z95 K2 F6", scenario, head=HEAD.replace(" M03 S400", "") + "G04 1\n")
+    assert texts(bench) == [f"22088 channel channel: {change} in test.nc line 5 'G34 Z95 K2 F6'; {NOT_BEGUN}"]
+    assert refusal("S1500\nG34 Z95 K2 F6") == f"22088 test.nc line 5 column 1 'G34 Z95 K2 F6': {change}"

@@ -93,8 +93,8 @@ def test_random_programs_take_as_long_as_estimated(seed: int) -> None:
         ("config/mill.yaml", "bracket.nc", None),
         ("config/mill.yaml", "pocket.nc", None),
         ("config/mill.yaml", "plate.ngc", "iso"),
-        ("examples/lathe.yaml", "lathe.nc", None),
-        ("examples/lathe.yaml", "turning.nc", None),
+        ("config/lathe.yaml", "lathe.nc", None),
+        ("config/lathe.yaml", "turning.nc", None),
     ],
 )
 def test_examples_take_as_long_as_estimated(machine: str, file: str, dialect: str | None) -> None:

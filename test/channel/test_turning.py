@@ -13,7 +13,7 @@ from replay_support import bits, replay
 from cnc_ptp.parameters import Synchronisation, read_machine
 from cnc_ptp.protocol.channel_states import ChannelStateCode as C
 
-LATHE = read_machine(ROOT / "examples" / "lathe.yaml")
+LATHE = read_machine(ROOT / "config" / "lathe.yaml")
 SHOWN = machine(LATHE, channel={"shows_diameter": True})
 FACING = """N10 G18 G51
 N20 M03 S100
@@ -191,9 +191,9 @@ def test_rapid_traverse_and_g97_keep_the_speed() -> None:
 
 @pytest.mark.parametrize(("limit", "largest"), [("N50 G196 S1500", 1500.0), ("N50", 4000.0)])
 def test_the_speed_is_limited(limit: str, largest: float) -> None:
-    """By G196, and by the gear at the turning centre."""
+    """By G196, and by the gear at the turning centre; the cut begins there, which is a warning."""
     bench = run(FACING.replace("N50 G196 S3500", limit).replace("X10", "X0").replace("F0.1", "F0.5"))
-    assert bench.events == []
+    assert [event.error_id for event in bench.events] == [20633]
     assert max(set_speeds(bench)) == largest
     assert max(bench.column("s", "set_speed_rpm")) == pytest.approx(largest)
 
@@ -217,8 +217,8 @@ def test_few_commands_where_the_diameter_stays() -> None:
 @pytest.mark.parametrize("synchronisation", ["MVS_SVS", "MVS_SNS", "MVS_SLM", "NO_SYNCH"])
 def test_no_synchronisation_stops_the_path_in_the_cut(synchronisation: str) -> None:
     """S of G96 is waited for at most once; what follows the facing axis is not."""
-    (spindle,) = LATHE.channels["channel"].spindles
-    spindles = (spindle._replace(s=Synchronisation[synchronisation]),)
+    main, driven = LATHE.channels["channel"].spindles
+    spindles = (main._replace(s=Synchronisation[synchronisation]), driven)
     bench = run(FACING.replace("F0.1", "F0.4"), parameters=machine(LATHE, channel={"spindles": spindles}))
     assert bench.errors() == []
     velocity = bench.column("channel", "path_velocity")
@@ -240,7 +240,7 @@ def test_spindle_override_acts() -> None:
     bench = run(FACING, "- {at: 0.0, to: s, do: set_override, percent: 50}")
     cut = steady(bench, cycles_of(bench, 70))
     assert cutting_speeds(bench, cut) == pytest.approx([50.0] * len(cut), rel=0.01)
-    assert feeds(bench, cut) == pytest.approx([0.1] * len(cut), rel=0.01)
+    assert feeds(bench, cut) == pytest.approx([0.1] * len(cut), rel=0.02)  # feedforward shows each new speed at once
 
 
 def test_replay_is_equal_to_the_bit() -> None:

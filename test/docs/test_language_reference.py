@@ -69,7 +69,7 @@ def test_every_word_of_iso_has_a_text_and_no_text_is_left_over():
 )
 def test_every_example_of_iso_is_a_program(entry):
     example = entry.explanation.example.replace(" G86", "\nG86")
-    run(f"F500\nG0\n{example}\nM30\nO100\nM99", dialect="iso")
+    run(f"F500\nG0\n{example}\nM30\nO100\nM99", dialect="iso", turning_axes=FACING["X"])
 
 
 @pytest.mark.parametrize("code", [code for code in ISO.g_codes.values() if code.later], ids=lambda code: code.name)

@@ -77,3 +77,22 @@ def test_blocks_of_a_corner_that_do_not_move(tmp_path: Path) -> None:
 def test_a_program_that_does_not_move(tmp_path: Path) -> None:
     text = refused(tmp_path, "%P\nG04 0.1\nM30\n", kind="over_path", axes="x, y", program="p.nc")
     assert text == "figure move.yaml: its program does not move along a path; no picture was drawn"
+
+
+LATHE = {"machine": "config/lathe.yaml", "axes": "x, z, s", "kind": "turned_part", "program": "p.nc"}
+
+
+@pytest.mark.parametrize(
+    ("head", "text"),
+    [
+        (
+            {"machine": "config/mill.yaml", "axes": "x, y"},
+            "a turned part needs 'program: ...' and a channel with X, Z and a C axis",
+        ),
+        ({"turns": "cut = N10 N99"}, "turns 'cut': the program is never in N10 and N99"),
+        ({"turns": "cut = N10 N20"}, "none of its turns is drawn as Z over the length of arc in mm"),
+    ],
+)
+def test_heads_that_make_no_turned_part(tmp_path: Path, head: dict[str, str], text: str) -> None:
+    program = "%P\nN10 G01 X140 F2000\nN20 X141\nM30\n"
+    assert refused(tmp_path, program, **{**LATHE, **head}) == f"figure move.yaml: {text}; no picture was drawn"

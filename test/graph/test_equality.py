@@ -432,27 +432,21 @@ def test_tapping_in_the_graph_equals_the_offline_run(folder, options):
     assert len(verified(folder / "u.mcap").states) == 5
 
 
-EXAMPLES = MILL.parents[1] / "examples"
 LATHE = MILL.parent / "lathe.yaml"
 THREAD = "N10 M3 S600\nN20 G00 X20 Z10\nN30 G33 Z4 K1.5\nN40 Z0 K2\nN50 G00 X30\nN60 M5\nN70 M30\n"
 TURNING = "G51 G00 X60 Z2\nG196 S2000\nG96 S120 M3\nG95 G01 X40 F0.2\nG97 M5\nM30\n"
 C_AXIS = "G00 X30 Z5\n#CAX\n#FACE [X, C]\nG01 X20 C0 F3000\nX10 C8\n#FACE OFF\nG01 C90 F9000\n#CAX OFF\nM30\n"
-WITH_SPINDLE = {
-    "thread": (LATHE, THREAD),
-    "turning": (EXAMPLES / "lathe.yaml", TURNING),
-    "c_axis": (EXAMPLES / "lathe_c.yaml", C_AXIS),
-}
+WITH_SPINDLE = {"thread": THREAD, "turning": TURNING, "c_axis": C_AXIS}
 
 
 @pytest.mark.parametrize("options", [["--free-run"], ["--composed"]], ids=str)
 @pytest.mark.parametrize("motion", list(WITH_SPINDLE))
 def test_path_with_a_spindle_in_the_graph_equals_the_offline_run(folder, motion, options):
     """The path follows the reports of a spindle in another process, or moves it as its C axis."""
-    machine, text = WITH_SPINDLE[motion]
-    (folder / "spindle.nc").write_text(text)
-    job = (machine, "--program", folder / "spindle.nc")
+    (folder / "spindle.nc").write_text(WITH_SPINDLE[motion])
+    job = (LATHE, "--program", folder / "spindle.nc")
     told = run("simulate", *job, "--record", folder / "v.mcap").stdout
     output = run("run", *job, *options, "--record", folder / "w.mcap").stdout
     assert "lost 0, computed twice 0" in output and "refused" not in told
     assert states_equal(folder / "v.mcap", folder / "w.mcap") == []
-    assert len(verified(folder / "w.mcap").states) == 4
+    assert len(verified(folder / "w.mcap").states) == 5

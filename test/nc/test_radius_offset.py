@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 import shapely
 from contour_support import Edge, distances, edges_of, polygon, random_contour, words
-from nc_support import run
+from nc_support import TABLES, run
 
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.radius.radius_state import RadiusSettings
@@ -71,6 +71,34 @@ def test_two_hundred_contours_of_lines_and_arcs_by_distances() -> None:
         offset = polygon(path)
         assert offset.is_valid, seed
         assert path[0].start == pytest.approx(path[-1].end, abs=10.0 * EXACT), seed  # the middle of a line is rounded
+
+
+@pytest.mark.parametrize("command", ["#FACE [X, C]", "#CYL [X, C, X20]"])
+def test_contours_on_the_face_and_on_the_cylinder(command: str) -> None:
+    """The plane is that of the Cartesian words, whatever G17 to G19 say."""
+    for seed, contour, _, radius in cases(lines_only=False)[:60]:
+        code, tools = "G41" if radius < 0.0 else "G42", ToolTable({1: Tool(radius=abs(radius))}, True)
+        tool, *text = program(contour, code).replace("Y", "C").split("\n")
+        text = ["D1", "#CAX", command, f"G19 {tool.removeprefix('D1 ')}", *text]
+        blocks = run("\n".join(text), axes=("X", "C"), spindles=TABLES["c_axis"], tools=tools, radius=ALL)
+        path = edges_of(blocks)[1:-1]
+        points = np.vstack([edge.points(33) for edge in path])
+        assert np.abs(distances(contour, points) - abs(radius)).max() < EXACT, seed
+        inside = polygon(contour).contains(shapely.points(points))
+        assert (inside == (radius < 0.0)).all(), seed
+        assert all(block.motion.kinematics.name == command for block in blocks if block.motion is not None)
+
+
+def test_a_mirrored_face_has_the_path_of_the_mirrored_contour() -> None:
+    """Left of the drawing is right of the contour then; the mirrored program with the other code says so, too."""
+    head = "G18 D1\n#CAX\nG00 X30 C0\n#FACE [X, C]\n"
+    programs = (
+        head + "G22 X-30\nG41 G01 X-20 C-10 F600\nC10\nX0 C20\nG40 X30",
+        head + "G42 G01 X20 C-10 F600\nC10\nX0 C20\nG40 X-30",
+    )
+    options = {"spindles": TABLES["c_axis"], "tools": ToolTable({1: Tool(radius=3.0)}, True)}
+    mirrored, plain = (edges_of(run(text, axes=("X", "C", "Z"), **options)) for text in programs)
+    assert mirrored[1:] == plain[1:]
 
 
 def test_two_hundred_contours_of_lines_by_shapelys_offset() -> None:

@@ -98,7 +98,10 @@ def test_passes_of_a_thread_get_deeper_by_the_square_root_of_their_number() -> N
 def test_flank_infeed_taper_starts_and_chamfer_of_a_thread() -> None:
     """Inside, from Z62 to Z32: cuts at 0.5 and 1; at 45 deg the first starts 0.5 mm farther away."""
     arguments = "@X=20 @Z=32 @LEAD=3 @DEPTH=-0.8 @FIRST=0.5657 @ANGLE=45 @TAPER=-3 @CHAMFER=3 @STARTS=2 @CLEAR=2"
+    broken_off = " retract -2.8 by axis 0"  # depth and CLEAR, towards the turning centre
     found = threading(arguments)
+    assert all(line.endswith(broken_off) for line in found if line.startswith("thread"))
+    found = [line.removesuffix(broken_off) for line in found]
     assert found[0] == "rapid (15, 62)"
     first = [
         "rapid (15, 62.2343)",

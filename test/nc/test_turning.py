@@ -81,6 +81,14 @@ def test_the_gear_is_chosen_for_the_speed() -> None:
     assert [each for each in found if isinstance(each, CuttingSpeed)] == [CuttingSpeed("S", pytest.approx(1000.0))] * 2
 
 
+def test_a_start_near_the_turning_centre_is_limited_with_a_warning() -> None:
+    """100 m/min at 10 mm is 1591.5 rpm."""
+    warning = "warning 20633 'axis X is 5 mm from the turning centre: spindle S turns at 1500 rpm (G196, P-AXIS-00212),"
+    near = turned("G00 X10\nM3 S100\nG196 S1500\nG96 S100")
+    assert any(f"{warning} slower than the cutting speed needs'" in line for line in near)
+    assert not any("20633" in line for line in turned("G00 X60\nM3 S100\nG196 S1500\nG96 S100\nG01 X10"))
+
+
 def test_g96_needs_its_own_s() -> None:
     assert turned("M03 S500\nG96\nG97\nG96\nS100")[1:] == ["S[G96 1666.666667 mm/s by axis 0] | S[REV15915494.30919]"]
 

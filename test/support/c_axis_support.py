@@ -13,7 +13,7 @@ from machine_support import ROOT, MachineBench
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.protocol.spindle_states import SpindleBit
 
-LATHE = read_machine(ROOT / "examples" / "lathe_c.yaml")
+LATHE = read_machine(ROOT / "config" / "lathe.yaml")
 
 
 def lathe(**channel: Any) -> MachineParameters:

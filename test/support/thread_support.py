@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from machine_support import ROOT, MachineBench
@@ -12,7 +12,24 @@ from numpy.typing import NDArray
 
 from cnc_ptp.parameters import MachineParameters, read_machine
 
-LATHE = read_machine(ROOT / "config" / "lathe.yaml")
+MACHINE = read_machine(ROOT / "config" / "lathe.yaml")
+SLOW: Final = 6000.0
+"""deg/s² of the spindle in these tests: the numbers of docs/threads.md are measured with it."""
+
+
+def slower(machine: MachineParameters) -> MachineParameters:
+    """The same machine with a spindle that needs 4 s to 4000 rpm."""
+    spindle = machine.spindles["s"]
+    gears = {
+        stage: replace(
+            gear, max_acceleration=2 * SLOW, acceleration=SLOW, deceleration=SLOW, emergency_deceleration=2 * SLOW
+        )
+        for stage, gear in spindle.gears.items()
+    }
+    return replace(machine, spindles={**machine.spindles, "s": replace(spindle, gears=gears)})
+
+
+LATHE = slower(MACHINE)
 HEAD = "%T\nN10 G18 G90 M03 S400\nG00 X36 Z105\n"
 """Three lines: the first line behind it is line 4. The axes stand at X36 Z105."""
 Floats = NDArray[np.float64]

@@ -8,6 +8,7 @@ from collections.abc import Collection, Mapping, Sequence
 from cnc_ptp.nc.arcs import extreme_points
 from cnc_ptp.nc.canonical import CircularMove, LinearMove, Source
 from cnc_ptp.nc.coordinates import coordinate_faults as faults
+from cnc_ptp.nc.machine_points import machine_points
 from cnc_ptp.nc.program import Channel
 
 Limits = Mapping[int, tuple[float, float]]
@@ -17,7 +18,14 @@ Limits = Mapping[int, tuple[float, float]]
 def check_limits(
     channel: Channel, limits: Limits, start: tuple[float, ...], motion: LinearMove | CircularMove, source: Source
 ) -> None:
-    """Raises ProgramError 120002 / 120003 for a motion from `start` (machine coordinates) beyond a limit."""
+    """Raises ProgramError 120002 / 120003 for a motion from `start` (machine coordinates) beyond a limit.
+
+    Of a Cartesian one (#FACE, #CYL) all axes count.
+    """
+    if motion.kinematics is not None:
+        points = machine_points(start, motion, source)[1:]
+        require_within(channel, limits, points, range(len(channel.axes)), source)
+        return
     points = [motion.target]
     moving = moving_axes(start, motion.target)
     if isinstance(motion, CircularMove):

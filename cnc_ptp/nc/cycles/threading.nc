@@ -61,6 +61,10 @@ V.L.SLOPE = V.L.TAPER / [@Z - V.L.BEGIN]
 V.L.FREE = @X + V.L.INTO * [V.L.CLEAR + MAX[0, V.L.INTO * V.L.TAPER]]
 V.L.CUTS = CEIL[[V.L.FULL / @FIRST] ** 2 - 0.000001]
 V.L.OUT = @Z - V.L.SIDE * V.L.CHAMFER
+$IF V.L.INTO < 0
+; Inside, the tool leaves the groove towards the turning centre if the thread is broken off
+#THREAD RETRACT X[V.L.INTO * [V.L.FULL + V.L.CLEAR]]
+$ENDIF
 G90 G00 X[V.L.FREE]
 $FOR V.L.CUT = 1, V.L.CUTS + V.L.SPRING, 1
 V.L.DOWN = MIN[@FIRST * SQRT[V.L.CUT], V.L.FULL]

@@ -19,6 +19,7 @@ from cnc_ptp.nc.iso.offsets import integer
 from cnc_ptp.nc.program import Channel, Drilling, GCode, ModalState, NcBlock, Step
 from cnc_ptp.nc.radius.changes import require_off
 from cnc_ptp.nc.spindles import current_main, require_spindle
+from cnc_ptp.nc.turning_faults import TAPPING_FEED
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 
 BACKED_OFF: Final = 0.254
@@ -115,7 +116,9 @@ def _hole(state: ModalState, block: NcBlock, code: GCode, numbers: Drilling, nam
         raise faults.PECK.at(source, source.column("Q"), g=code.name, value=number(q))
     if p < 0.0:
         raise faults.DWELL.at(source, source.column("P"), g=code.name, value=number(p))
-    if state.feed_mode != feeds.PER_MINUTE:
+    if state.feed_mode == feeds.PER_TURN and code.number in TAPPING:
+        raise TAPPING_FEED.at(source, column, g=code.name)
+    if state.feed_mode not in (feeds.PER_MINUTE, feeds.PER_TURN):
         raise faults.CYCLE_FEED.at(source, column, g=code.name)
     feeds.require_feed(state, block, code)
     return Hole(axis, r, bottom, r if numbers.to_r else max(r, numbers.initial), q, p, state.feed)

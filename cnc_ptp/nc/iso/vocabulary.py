@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from cnc_ptp.nc import feeds, functions, measuring, motions, transitions
+from cnc_ptp.nc import feeds, functions, measuring, motions, transitions, turning
 from cnc_ptp.nc.coordinates import codes
 from cnc_ptp.nc.iso import cycles, lengths, offsets
 from cnc_ptp.nc.iso import motions as own
@@ -56,6 +56,7 @@ _G_CODES = (
     GCode(43, "tool length", prepare=lengths.length_on, words=frozenset("H")),
     GCode(43, "tool length", minor=1, later="tool lengths without a table"),
     GCode(49, "tool length", prepare=lengths.length_off),
+    GCode(turning.LARGEST_ISO, turning.LIMIT_GROUP),
     GCode(52, "block", function=offsets.local_offset, takes_axes=True),
     GCode(53, "block", prepare=offsets.machine_coordinates),
     *(GCode(number, "zero offset", prepare=codes.zero_offset) for number in range(54, 60)),
@@ -85,9 +86,9 @@ _G_CODES = (
     *(GCode(92, "block", minor=minor, prepare=offsets.end_position) for minor in (1, 2, 3)),
     GCode(93, "feed", select=feeds.inverse_time),
     GCode(94, "feed", select=feeds.per_minute),
-    GCode(95, "feed", later="feed per revolution"),
-    GCode(96, "cutting speed", later="constant cutting speed"),
-    GCode(97, "cutting speed"),
+    GCode(95, "feed", select=feeds.per_turn),
+    GCode(turning.CONSTANT, turning.GROUP, prepare=turning.constant_on),
+    GCode(turning.SPEED, turning.GROUP),
     _return_level(98, False),
     _return_level(99, True),
 )

@@ -21,11 +21,14 @@ from cnc_ptp.nc.canonical import (
     BUSY,
     CanonicalBlock,
     CircularMove,
+    FeedPerTurn,
     HomeAxes,
+    KinematicsChange,
     LanguageWarning,
     LinearMove,
     Motion,
     Source,
+    SpindleAxis,
     number,
 )
 from cnc_ptp.nc.coordinates.limits import check_limits
@@ -155,12 +158,12 @@ class RadiusCompensation:
     def _engage(self, block: CanonicalBlock) -> None:
         """Takes plane and tool, which stay until the departure. Raises ProgramError."""
         state, code = self._state, self._state.radius_compensation.code
-        names = PLANE_AXES[state.plane]
+        names = self._plane_names
         first, second = (self._channel.axis_index.get(name) for name in names)
-        plane_code = f"G{state.plane}"
         if first is None or second is None:
             known = ", ".join(self._channel.axes)
-            raise self._at(nc_faults.PLANE_AXIS_MISSING, block, g=plane_code, needed=" and ".join(names), known=known)
+            needed = " and ".join(names)
+            raise self._at(nc_faults.PLANE_AXIS_MISSING, block, g=self._plane_code, needed=needed, known=known)
         plane = working_plane(state.frame, first, second)
         if plane is None:
             raise self._at(faults.SCALED_PLANE, block, g=code)
@@ -170,6 +173,8 @@ class RadiusCompensation:
         self._plane, self._radius, self._tip = plane, radius_of(tool), tip_of(tool)
         if plane.directions is not None and self._tip != CENTRE:
             raise self._at(faults.TILTED_TIP, block, g=code)
+        if state.coordinates.kinematics is not None and self._tip != CENTRE:
+            raise self._at(faults.CARTESIAN_TIP, block, g=code, command=self._plane_code)
         state.radius_compensation = state.radius_compensation._replace(engaged=True)
 
     def _approach(self, entry: Entry, fault: nc_faults.Fault) -> None:
@@ -208,8 +213,22 @@ class RadiusCompensation:
         """An arc, or a straight line whose words name an axis of the plane."""
         if isinstance(block.motion, CircularMove):
             return True
-        names = PLANE_AXES[self._state.plane]
-        return isinstance(block.motion, LinearMove) and any(name in block.source.names for name in names)
+        return isinstance(block.motion, LinearMove) and any(name in block.source.names for name in self._plane_names)
+
+    @property
+    def _plane_names(self) -> tuple[str, str]:
+        """Of the axes of the plane: that of G17 to G19, or of #FACE and #CYL."""
+        kinematics = self._state.coordinates.kinematics
+        if kinematics is None:
+            return PLANE_AXES[self._state.plane]
+        first, second = kinematics.plane
+        return self._channel.axes[first], self._channel.axes[second]
+
+    @property
+    def _plane_code(self) -> str:
+        """What selects the plane, for errors."""
+        kinematics = self._state.coordinates.kinematics
+        return f"G{self._state.plane}" if kinematics is None else kinematics.name
 
     def _moved(self, motion: Motion | None, before: tuple[float, ...]) -> Shape | None:
         """What a motion is in the plane; None if it does not move there."""
@@ -242,8 +261,7 @@ class RadiusCompensation:
         self._others += 1
         limit = self._channel.radius.other_blocks
         if self._others > limit:
-            plane = f"G{self._state.plane}"
-            raise self._at(faults.OTHER_BLOCKS, entry.block, count=self._others, g=plane, limit=limit)
+            raise self._at(faults.OTHER_BLOCKS, entry.block, count=self._others, g=self._plane_code, limit=limit)
         if self._entries:
             self._entries.append(entry)
         else:
@@ -252,7 +270,7 @@ class RadiusCompensation:
     def _finish_contour(self) -> Iterator[CanonicalBlock]:
         """The last element ends at its end, where nothing cuts it. Raises ProgramError without an element."""
         if self._approaches:
-            raise self._at(faults.NO_ELEMENT, self._entries[0].block, g=f"G{self._state.plane}")
+            raise self._at(faults.NO_ELEMENT, self._entries[0].block, g=self._plane_code)
         if self._path is not None:
             yield from self._hand_out(all_known=True)
             self._path = None
@@ -329,6 +347,7 @@ class RadiusCompensation:
             feed = self._feed(entry, shape) if own else motion.feed
             sweep, plane = math.degrees(shape.sweep), self._plane
             made = CircularMove(target, centre, plane.axes, shape.radius, sweep, feed, *common, plane.directions)
+        made = made._replace(per_turn=_per_turn(motion, made.feed), kinematics=motion.kinematics)
         if not own:
             entry = Entry(CanonicalBlock(entry.block.source, (), None, "", calls=entry.block.calls), entry.limits)
         yield from self._carried_out(entry, made)
@@ -372,6 +391,12 @@ class RadiusCompensation:
         return self._at(faults.NO_CROSSING, fault.first.block, tool=tool, line=other.line, text=text, count=count)
 
 
+def _per_turn(motion: LinearMove | CircularMove, feed: float) -> FeedPerTurn | None:
+    """G95 of a motion, for a piece of its path with another feed."""
+    link = motion.per_turn
+    return link if link is None or feed == motion.feed else link._replace(feed=link.feed * feed / motion.feed)
+
+
 def without_motion(block: CanonicalBlock) -> Iterator[CanonicalBlock]:
     """What is left of a block that goes nowhere."""
     if block.functions or block.stop or block.offsets is not None:
@@ -382,6 +407,11 @@ def wait_of(block: CanonicalBlock) -> str:
     """Why the interpreter must wait for the path behind a block."""
     if isinstance(block.motion, HomeAxes):
         return "homing"
+    for function in block.functions:
+        if isinstance(function, SpindleAxis):
+            return "#CAX"
+        if isinstance(function, KinematicsChange):
+            return "the end of #FACE or #CYL" if function.kinematics is None else function.kinematics.name
     return "a measuring run" if measures(block.motion) else "reading what only the run knows"
 
 

@@ -43,6 +43,7 @@ NO_CROSSING = Fault(
 )
 SCALED_PLANE = Fault(21687, "{g} in a tilted plane with different scales, in which nothing keeps its distance")
 TILTED_TIP = Fault(21688, "{g} in a tilted plane with a turning tool, whose tip has a position in the machine")
+CARTESIAN_TIP = Fault(21690, "{g} while {command} is on with a turning tool, whose tip has a position in the machine")
 
 STILL_ON: Final = 21689
 """Number of the warning at the end of a program."""

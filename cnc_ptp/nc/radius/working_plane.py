@@ -57,19 +57,24 @@ class WorkingPlane(NamedTuple):
 
 
 def working_plane(frame: Frame | None, first: int, second: int) -> WorkingPlane | None:
-    """The programmed plane of two axes; None if it is tilted and what is square in it is not square in the machine."""
+    """The programmed plane of two axes; None if it is tilted and what is square in it is not square in the machine.
+
+    So it is where only one of them is turned: X of #FACE.
+    """
     if frame is None or not frame.turned:
         return WorkingPlane((first, second))
     u, v = column(frame, first), column(frame, second)
     across = [abs(x) + abs(y) for axis, (x, y) in enumerate(zip(u, v, strict=True)) if axis not in (first, second)]
     if max(across, default=0.0) <= ALONG * hypot(*u, *v):
         return WorkingPlane((first, second))
-    circle = frame.circle(first, second)
+    circle = frame.circle(first, second) if second in frame.main else None
     return None if circle is None else WorkingPlane((first, second), circle.directions)
 
 
 def column(frame: Frame, axis: int) -> tuple[float, ...]:
-    """Where a programmed millimetre of an axis goes in the machine, one value for each axis."""
+    """Where a programmed millimetre of an axis goes in the machine, one value for each axis; C is no main axis."""
+    if axis not in frame.main:
+        return tuple([1.0 if index == axis else 0.0 for index in range(len(frame.shift))])
     place = frame.main.index(axis)
     parts = {index: frame.linear[row][place] for row, index in enumerate(frame.main) if index >= 0}
     return tuple([parts.get(index, 0.0) for index in range(len(frame.shift))])

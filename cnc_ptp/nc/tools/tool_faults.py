@@ -9,4 +9,8 @@ LENGTH_AXIS = Fault(
     21652, "the tool of D{number} is {length} mm long in axis {axis} (G{plane}), which this channel does not have"
 )
 WRITTEN_WITH_D = Fault(20738, "{name} is written in a block with {word}, which selects other data")
+TOOL_NUMBER = Fault(20863, "{command}: tool number {value} must be an integer from 0 to {limit}")
+NO_SISTER = Fault(
+    21915, "{command} [{tool}]: the tool table has no sister tools and variants, their numbers must be 0 or missing"
+)
 VALUE_INDEX = Fault(21653, "value {index} of a tool must be an integer from 0 to {limit}")

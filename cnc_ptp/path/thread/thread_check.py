@@ -11,7 +11,7 @@ from cnc_ptp.nc.canonical import LinearMove, Thread
 from cnc_ptp.parameters import AxisParameters, ChannelParameters
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.path.geometry import AxisLimits
-from cnc_ptp.path.motion_plan import feed_limits, path_axes
+from cnc_ptp.path.motion_plan import NO_LIMITS, feed_limits, path_axes
 from cnc_ptp.path.thread.retract import RETRACT_SHARE, Retract
 from cnc_ptp.path.thread.thread_geometry import ThreadGeometry
 
@@ -49,14 +49,16 @@ class ThreadSettings(NamedTuple):
 
 def thread_settings(channel: ChannelParameters, axes: Sequence[AxisParameters], cycle_time: float) -> ThreadSettings:
     """Of the threads of a channel. All axes of a path act equally late."""
-    names = [axis.name for axis in channel.axes]
+    names, limits = list(channel.path_axes), feed_limits(axes)
+    if channel.c_axis:
+        limits.append(NO_LIMITS)
     retract = None
     if channel.thread_retract_axis in names and channel.thread_retract:
         axis = names.index(channel.thread_retract_axis)
         retract = Retract(axis, channel.thread_retract_axis, channel.thread_retract)
     delay = max((axis.control.delay_cycles for axis in axes), default=0)
     places = sorted(path_axes(channel))
-    return ThreadSettings(names, feed_limits(axes), places, cycle_time, delay, channel.thread_run_up, retract)
+    return ThreadSettings(names, limits, places, cycle_time, delay, channel.thread_run_up, retract)
 
 
 class Ramps(NamedTuple):
@@ -64,6 +66,15 @@ class Ramps(NamedTuple):
 
     run_up: float
     run_out: float
+
+
+def with_retract(settings: ThreadSettings, motion: LinearMove) -> ThreadSettings:
+    """Those of a thread that begins with this block: the program may say how the tool leaves it."""
+    words = words_of(motion)
+    if words.retract is None:
+        return settings
+    axis, way = words.retract
+    return settings._replace(retract=Retract(axis, settings.names[axis], way) if way else None)
 
 
 def angle_of(motion: LinearMove) -> float:

@@ -1,4 +1,4 @@
-; P-ERR-21076 link_syntax.nc line 3 column 5 'N10 #SET AX LINK[1]': #SET AX LINK is written #SET AX LINK [group, slave=master, ...] or [group, slave=master, num, den, ...]
+; P-ERR-21076 link_syntax.nc line 3 column 5 'N10 #SET AX LINK[1]': #SET AX LINK is written #SET AX LINK [group, slave=master, ...] or [group, [slave=master, num, den], ...]
 ; machine X / three
 N10 #SET AX LINK[1]
 M30

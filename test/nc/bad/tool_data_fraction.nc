@@ -1,5 +1,6 @@
-; P-ERR-21010 tool_data_fraction.nc line 4 column 5 'N20 D[P1+0.5]': D1.5 must be an integer from 0 to 999999999
+; P-ERR-20863 tool_data_fraction.nc line 5 column 16 '#TOOL DATA [P1 / 2]': #TOOL DATA: tool number 1.5 must be an integer from 0 to 999999999
+; machine X Y Z / S
 ; tools milling
-N10 P1 = 1
-N20 D[P1+0.5]
+P1 = 3
+#TOOL DATA [P1 / 2]
 M30

@@ -1,0 +1,142 @@
+%L SAFE
+; where tools are changed: X first, then Z, in machine positions, without a tool; X is a radius from here on
+N10 G90 G52 D0
+N20 #MCS ON
+N30 G00 X190
+N40 Z380
+N50 #MCS OFF
+N60 M29
+%L LETTER_P
+; 6 mm high along Z, from its foot; the next letter begins where it ends
+N10 G90 G01 X21.8 F200
+N20 G91 Z6 F600
+N30 C2
+N40 G03 Z-3 I-1.5 J0
+N50 G01 C-2
+N60 G90 G00 X24
+N70 G91 Z-3 C5.5
+N80 G90 M29
+%L LETTER_T
+N10 G91 G00 C2
+N20 G90 G01 X21.8 F200
+N30 G91 Z6 F600
+N40 C-2
+N50 C4
+N60 G90 G00 X24
+N70 G91 Z-6 C2
+N80 G90 M29
+%TURNED_PART
+; A screwed fitting from a bar of 50 mm, which is 3 mm too long. Zero is its face, 100 mm in front of the spindle.
+N10 V.G.NP[1].V.Z = 100
+N20 G54 G18 G90
+
+; 1 the face, with a cutting speed of 180 m/min
+N100 LL SAFE
+N110 G51 T1 D1 M03 S800
+N120 G95 F0.25
+N130 G00 X54 Z3
+N140 G196 S3000
+N150 G96 S180
+N160 L CYCLE [NAME=facing.nc @DBEGIN=50 @ZBEGIN=0 @DEND=0 @ZEND=0 @CUT=1.5]
+
+; 2 three steps; 0.3 mm are left
+N200 G00 X50 Z2
+N210 L CYCLE [NAME=roughing.nc @DBEGIN=44 @ZBEGIN=0 @DEND=44 @ZEND=-62 @CUT=2 @ALLOWANCE=0.3]
+N220 G00 X44.6
+N230 L CYCLE [NAME=roughing.nc @DBEGIN=30 @ZBEGIN=0 @DEND=30 @ZEND=-31.7 @CUT=2 @ALLOWANCE=0.3]
+N240 G00 X30.6
+N250 L CYCLE [NAME=roughing.nc @DBEGIN=20 @ZBEGIN=0 @DEND=20 @ZEND=-5.7 @CUT=2 @ALLOWANCE=0.3]
+N260 G00 X60
+
+; 3 the contour, by a tool with a nose of 0.4 mm on the right of it
+N300 LL SAFE
+N310 G51 T4 D4 S220 F0.1
+N320 G00 X12 Z2
+N330 G42 G01 X16 Z1
+N340 X20 Z-1
+N350 Z-6
+N360 X26
+N370 X30 Z-8
+N380 Z-32
+N390 X40
+N400 G03 X44 Z-34 I0 K-2
+N410 G01 Z-62
+N420 X52 Z-66
+N430 G40 X56
+N440 G97
+
+; 4 the thread M30x2
+N500 LL SAFE
+N510 G51 T5 D5 S600
+N520 G00 X40 Z-2
+N530 L CYCLE [NAME=threading.nc @X=15 @Z=-30 @LEAD=2 @DEPTH=1.23 @FIRST=0.35 @ANGLE=29.5 @SPRING=1 @CHAMFER=2.5]
+
+; from here on driven tools work, X is a radius and F is in mm/min
+; 5 two cross holes: drilled in step 5, the C axis turns the workpiece, and tapped M6 in step 6
+N600 LL SAFE
+N610 G94 M05
+N620 T9 D9 S2[M03 REV2500]
+N630 M19 S.POS=0 S200
+N640 G00 Z-42
+N650 #CAX [S, C]
+N660 $FOR P1 = 0, 180, 180
+N670   G00 X24 C[P1]
+N680   G01 X11 F250
+N690   G00 X24
+N700 $ENDFOR
+N710 #CAX OFF
+N720 S2[M05]
+; 6
+N800 LL SAFE
+N810 T6 D6
+N820 G00 Z-42
+N830 $FOR P1 = 0, 180, 180
+N840   M19 S.POS=[P1]
+N850   G00 X24
+N860   G63 X13 F500 S2=500
+N870   X24 S2=-500
+N880   G01 X26 F2000
+N890 $ENDFOR
+
+; 7 letters on the collar of 44 mm, 0.2 mm deep: C is the length of arc
+N900 LL SAFE
+N910 T7 D7 S2[M03 REV5000]
+N920 M19 S.POS=0 S200
+N930 G00 Z-56
+N940 #CAX [S, C]
+N950 G00 X24 C30
+N960 #CYL [Z, C, X22]
+N970 LL LETTER_P
+N980 LL LETTER_T
+N990 LL LETTER_P
+N1000 G00 X40
+N1010 #CYL OFF
+N1020 #CAX OFF
+N1030 S2[M05]
+
+; 8 a hexagon of 16 mm across its flats on the end of 20 mm, by a mill of 6 mm on the left of it
+N1100 LL SAFE
+N1110 T8 D8 S2[M03 REV4000]
+N1120 M19 S.POS=0 S200
+N1130 G00 X25
+N1140 Z2
+N1150 #CAX [S, C]
+N1160 #FACE [X, C]
+N1170 P1 = 8 / SQRT[3]
+N1180 G00 X16 C16
+N1190 Z-5
+N1200 G41 G01 X8 C[1.5 * P1] F400
+N1210 C[-P1]
+N1220 X0 C[-2 * P1]
+N1230 X-8 C[-P1]
+N1240 C[P1]
+N1250 X0 C[2 * P1]
+N1260 X8 C[P1]
+N1263 C0
+N1266 G40 X16 C-8
+N1270 G00 Z10
+N1280 #FACE OFF
+N1290 #CAX OFF
+N1300 S2[M05]
+N1310 LL SAFE
+N1320 M30
