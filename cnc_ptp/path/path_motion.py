@@ -624,14 +624,16 @@ def feed_limits(axes: Sequence[AxisParameters]) -> list[AxisLimits]:
 
 def thread_settings(channel: ChannelParameters, axes: Sequence[AxisParameters], cycle_time: float) -> ThreadSettings:
     """Of the threads of a channel. All axes of a path act equally late."""
-    names = [axis.name for axis in channel.axes]
+    names, limits = list(channel.path_axes), feed_limits(axes)
+    if channel.c_axis:
+        limits.append(NO_LIMITS)
     retract = None
     if channel.thread_retract_axis in names and channel.thread_retract:
         axis = names.index(channel.thread_retract_axis)
         retract = Retract(axis, channel.thread_retract_axis, channel.thread_retract)
     delay = max((axis.control.delay_cycles for axis in axes), default=0)
     places = sorted(path_axes(channel))
-    return ThreadSettings(names, feed_limits(axes), places, cycle_time, delay, channel.thread_run_up, retract)
+    return ThreadSettings(names, limits, places, cycle_time, delay, channel.thread_run_up, retract)
 
 
 def begins_element(before: float, now: float) -> bool:
