@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import partial
 from math import inf
 from typing import NamedTuple
@@ -34,9 +34,9 @@ from cnc_ptp.nc.expressions.values import Values, Variable, copies
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.execution import Limits
 from cnc_ptp.nc.flow.sections import Program
-from cnc_ptp.nc.interpreter import awaits_path, check, interpret, reads_the_run
+from cnc_ptp.nc.interpreter import awaits_path, check, interpret
 from cnc_ptp.nc.measuring import measures
-from cnc_ptp.nc.parser import NO_FILES, parse_all, parse_program
+from cnc_ptp.nc.parser import NO_FILES, parse_program
 from cnc_ptp.nc.program import (
     Channel,
     FacingAxis,
@@ -50,7 +50,6 @@ from cnc_ptp.nc.program import (
 )
 from cnc_ptp.nc.program_text import ProgramText
 from cnc_ptp.nc.radius.radius_state import radius_settings
-from cnc_ptp.nc.recovery import MOST_ERRORS
 from cnc_ptp.nc.streamed_program import stream_program
 from cnc_ptp.nc.vocabularies import VOCABULARIES
 from cnc_ptp.parameters import (
@@ -198,13 +197,14 @@ class ProgramCheck:
         vocabulary: Vocabulary | None = None,
     ) -> list[ProgramError]:
         """Syntax and modal errors of a program, as if it were started from the start positions; as `check`."""
-        found = check(
+        return check(
             text,
             file,
             self._axis_names,
             self._spindles,
             start=self.start,
             check_target=partial(self.check_target, unlimited=self._names(self.unreferenced_at_start)),
+            check_blocks=self._block_check,
             centre_offset=self._channel.circle_center_tolerance,
             centre_offset_ratio=self._channel.circle_center_ratio,
             rotary=self._rotary,
@@ -219,32 +219,21 @@ class ProgramCheck:
             limits=self._limits,
             vocabulary=vocabulary or self.vocabulary,
         )
-        places = {(error.file, error.line) for error in found}
-        of_functions = self._function_errors(self.parsed(text, file, files, vocabulary or self.vocabulary))
-        return found + [error for error in of_functions if (error.file, error.line) not in places]
 
-    def parsed(self, text: str | ProgramText, file: str, files: Mapping[str, str], vocabulary: Vocabulary) -> Program:
-        """A program, whose faulty lines raise when they are reached."""
-        return parse_all(text, file, files=files, cycles=self.cycles, vocabulary=vocabulary)[0]
+    def _block_check(self) -> Callable[[CanonicalBlock], None]:
+        """What the machine does not have, block after block; threads up to a homing: then no position is known."""
+        missing, position, homed = self._names(self.unreferenced_at_start), self.start, False
 
-    def _function_errors(self, program: Program) -> list[ProgramError]:
-        """Up to a homing or a line that reads what only the run knows; a measuring run is taken to reach its end."""
-        missing, state = self._names(self.unreferenced_at_start), self.state({}, {}, {})
-        found: dict[tuple[str, int], ProgramError] = {}
-        try:
-            for block in self._interpreted(
-                program, self.start, state, None, set(missing), required=False, checks=False
-            ):
-                try:
-                    self._require_block(block, set(missing))
-                except ProgramError as error:
-                    error.calls = list(block.calls)
-                    found.setdefault((error.file, error.line), error)
-                if isinstance(block.motion, HomeAxes) or reads_the_run(block) or len(found) == MOST_ERRORS:
-                    break
-        except ProgramError:
-            pass  # it is among those that the interpretation has found
-        return list(found.values())
+        def check_block(block: CanonicalBlock) -> None:
+            nonlocal position, homed
+            before, homed = position, homed or isinstance(block.motion, HomeAxes)
+            if isinstance(block.motion, (LinearMove, CircularMove)):
+                position = block.motion.target
+            self._require_block(block, missing)
+            if isinstance(block.motion, LinearMove) and block.motion.thread is not None and not homed:
+                self._require_thread(before, block.motion, block.motion.thread, block.source)
+
+        return check_block
 
     @property
     def axis_names(self) -> tuple[str, ...]:
@@ -366,9 +355,8 @@ class ProgramCheck:
         missing: set[str],
         *,
         required: bool,
-        checks: bool = True,
     ) -> Iterator[CanonicalBlock]:
-        """`missing`: names of axes that are not referenced; homing takes them out. `checks`: as `_require_block`."""
+        """`missing`: names of axes that are not referenced; homing takes them out."""
         stream = interpret(
             program,
             tuple(start),
@@ -393,8 +381,7 @@ class ProgramCheck:
         )
         position = tuple(start)
         for block in stream:
-            if checks:
-                self._require_block(block, missing)
+            self._require_block(block, missing)
             if missing and required and isinstance(block.motion, (LinearMove, CircularMove)):
                 self._require_references(position, block.motion, block.source, missing)
             if isinstance(block.motion, LinearMove) and block.motion.thread is not None:

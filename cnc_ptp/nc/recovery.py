@@ -58,6 +58,11 @@ class Recovery:
             self._noted.append(error)
             self._take(error)
 
+    def of_block(self, error: ProgramError, block: CanonicalBlock) -> None:
+        """As `note`, of a block that was interpreted already; each of its lines counts."""
+        error.calls = list(block.calls)
+        self._take(error)
+
     def go_on(self, error: ProgramError, execution: Execution, state: ModalState, before: ModalState | None) -> bool:
         """Whether the check continues behind an error.
 

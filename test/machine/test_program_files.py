@@ -11,6 +11,8 @@ from machine_support import ROOT
 
 from cnc_ptp.cli import main
 from cnc_ptp.commands.look.check import check
+from cnc_ptp.commands.look.program_plot import plot_program
+from cnc_ptp.commands.run.simulate import simulate
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine import program_files
 from cnc_ptp.machine.program_files import SHIPPED, Search, called_names, called_programs, read_file, read_program
@@ -250,6 +252,17 @@ def test_a_search_folder_that_is_missing_is_a_warning(tmp_path: Path, capsys: py
     (tmp_path / "main.nc").write_text("G00 X1\nM30\n")
     assert check(str(tmp_path / "main.nc"), str(machine)) == 0
     assert capsys.readouterr().err == f"warning: search folder {tmp_path / 'gone'} (P-CHAN-90004) does not exist\n"
+
+
+def test_a_run_warns_of_it_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    machine = tmp_path / "m.yaml"
+    machine.write_text(MILL.replace(CHANNEL, f"{CHANNEL}    interpreter: {{folders: [gone]}}\n"))
+    (tmp_path / "main.nc").write_text("G00 X1\nM30\n")
+    warning = f"warning: search folder {tmp_path / 'gone'} (P-CHAN-90004) does not exist"
+    assert simulate(str(machine), str(tmp_path / "main.nc"), None, None, None) == 0
+    assert warning in capsys.readouterr().err.splitlines()
+    assert plot_program(str(tmp_path / "main.nc"), str(machine)) == 0
+    assert warning in capsys.readouterr().err.splitlines()
 
 
 def test_a_long_text_is_in_memory_once(tmp_path: Path) -> None:

@@ -29,7 +29,7 @@ RULES = {
     "numbers": "real; an integer is a real number without decimals; `'H2FF'` hexadecimal, `'B1001'` binary",
     "truth": "TRUE is 1, FALSE is 0; a number is true from 1/2 on",
     "angles": "degrees; SIN and COS are exact at the multiples of 30° where they are 0, ±1/2, ±1",
-    "brackets": "`[ ]` in expressions; `( )` and `;` are comments, `(` must be closed in its line",
+    "brackets": "`[ ]` in expressions; `( )` and `;` are comments, without `)` to the end of the line",
     "operators, weak to strong": "`||` OR · XOR · `&&` AND · `== != < <= > >=` · `|` · `^` · `&` · `+ -` · `* / MOD` · "
     "sign · `**`",
     "words with expressions": "`X[P1 + 5]`, `XP1`, `X=P1 + 5`, `X SIN[30]`, `S[M3 REV=P1]`, `G[P1]`",
