@@ -257,7 +257,7 @@ def test_a_search_folder_that_is_missing_is_a_warning(tmp_path: Path, capsys: py
 def test_a_run_warns_of_it_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     machine = tmp_path / "m.yaml"
     machine.write_text(MILL.replace(CHANNEL, f"{CHANNEL}    interpreter: {{folders: [gone]}}\n"))
-    (tmp_path / "main.nc").write_text("G00 X1\nM30\n")
+    (tmp_path / "main.nc").write_text("G00 X1 Y1\nM30\n")
     warning = f"warning: search folder {tmp_path / 'gone'} (P-CHAN-90004) does not exist"
     assert simulate(str(machine), str(tmp_path / "main.nc"), None, None, None) == 0
     assert warning in capsys.readouterr().err.splitlines()
