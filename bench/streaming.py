@@ -1,8 +1,8 @@
 """`python -m bench.streaming BLOCKS`: a channel runs a program of many short blocks that it reads as it runs.
 
-Prints the resident size in MiB before the load, with the loaded text and at each tenth of the run. At its end: the largest
-of all, how much it has grown since the first tenth, and the blocks per second. The text alone is 16 bytes per block; what
-is beyond it must not grow. `python -m bench streaming` makes figures of the last line.
+Prints the resident size in MiB before the load, with the loaded text and at each tenth of the run. At its end: the
+largest of all, how much it has grown since the first tenth, and the blocks per second. The text alone is 16 bytes per
+block; what is beyond it must not grow. `python -m bench streaming` makes figures of the last line.
 """
 
 from __future__ import annotations
