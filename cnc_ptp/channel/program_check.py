@@ -26,7 +26,7 @@ from cnc_ptp.nc.canonical import (
     SpindleFunction,
     Thread,
 )
-from cnc_ptp.nc.contour import path_defaults
+from cnc_ptp.nc.contour import POS, path_defaults
 from cnc_ptp.nc.coordinates.codes import initial_state
 from cnc_ptp.nc.coordinates.coordinates import NO_CHANGES, OffsetChanges
 from cnc_ptp.nc.coordinates.limits import moving_axes, require_within
@@ -398,6 +398,10 @@ class ProgramCheck:
             self._function(function, block.source)
         if isinstance(block.motion, LinearMove):
             self._require_measuring_axes(block.motion, block.source)
+        if isinstance(block.motion, (LinearMove, CircularMove)) and block.motion.kinematics is None:
+            contour = block.motion.transition.contour
+            if contour is not None and contour.mode == POS:
+                self.check_target(contour.point, block.source, missing)
         if isinstance(block.motion, HomeAxes):
             missing.difference_update(self._homed(block.motion, block.source))
 

@@ -11,6 +11,8 @@ from pathlib import Path
 import pytest
 from program_segments import findings
 
+from cnc_ptp.nc.faults import ProgramError
+
 MILL = "config/mill.yaml"
 LATHE = "config/lathe.yaml"
 PAIRS = [
@@ -48,3 +50,17 @@ def test_a_cycle_keeps_to_its_path_and_the_axes_to_their_limits(code: int, tmp_p
     program = tmp_path / "cycle.nc"
     program.write_text(f"G00 Z10 F300\n{CYCLES[code]}\nX20 Y-10\nG18 {CYCLES[code]}\nG17 Z10\nM30\n")
     assert findings(MILL, str(program)) == []
+
+
+@pytest.mark.parametrize("words", ["PRE_DIST=2 POST_DIST=3 X9 Y1", "PRE_DIST=0 POST_DIST=0 X12 Y-2", "X10.5 Z1"])
+def test_a_corner_with_an_interim_point(words: str, tmp_path: Path) -> None:
+    program = tmp_path / "point.nc"
+    program.write_text(f"G00 X0 Y0\n#CONTOUR MODE [POS {words}]\nG61 G01 X10 F3000\nY10\nG261 X0 Y20\nX-10\nM30\n")
+    assert findings(MILL, str(program)) == []
+
+
+def test_an_interim_point_beyond_a_soft_limit_is_refused(tmp_path: Path) -> None:
+    program = tmp_path / "point.nc"
+    program.write_text("G00 X0 Y0\n#CONTOUR MODE [POS X10 Y-201]\nG61 G01 X10 F3000\nY10\nM30\n")
+    with pytest.raises(ProgramError, match="axis Y: -201 mm lies beyond the negative soft limit -200 mm"):
+        findings(MILL, str(program))

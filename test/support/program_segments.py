@@ -15,7 +15,7 @@ from cnc_ptp.channel.program_check import ProgramCheck
 from cnc_ptp.machine.program_files import read_program
 from cnc_ptp.machine.run_entries import program_search
 from cnc_ptp.nc.canonical import STEP, CanonicalBlock, CircularMove, HomeAxes, LinearMove
-from cnc_ptp.nc.contour import DEV, Transition
+from cnc_ptp.nc.contour import DEV, POS, Transition
 from cnc_ptp.parameters import MachineParameters
 
 JOINT = 0.25
@@ -105,6 +105,9 @@ def permit(segment: Segment, transition: Transition) -> None:
     contour, smoothing = transition.contour, transition.smoothing
     if contour is not None:
         segment.deviation = contour.path_dev if contour.mode == DEV else max(contour.pre_dist, contour.post_dist)
+        if contour.mode == POS:  # the curve goes a little beyond its interim point
+            apart = float(np.linalg.norm(np.array(contour.point[: len(segment.end)]) - segment.end))
+            segment.deviation = max(segment.deviation, 1.2 * apart)
         segment.track = contour.track_dev
     if smoothing is not None:
         segment.everywhere, segment.track_everywhere = smoothing.path_dev, smoothing.track_dev or inf
