@@ -24,6 +24,7 @@ TOPICS = (
     "control",
     "smoothing",
     "lookahead",
+    "streaming",
     "recording",
     "offline",
     "graph",

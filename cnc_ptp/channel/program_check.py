@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import partial
 from math import inf
 from typing import NamedTuple
@@ -27,7 +27,7 @@ from cnc_ptp.nc.canonical import (
     SpindleFunction,
     Thread,
 )
-from cnc_ptp.nc.contour import path_defaults
+from cnc_ptp.nc.contour import POS, path_defaults
 from cnc_ptp.nc.coordinates.codes import initial_state
 from cnc_ptp.nc.coordinates.coordinates import NO_CHANGES, OffsetChanges
 from cnc_ptp.nc.coordinates.limits import moving_axes, require_within
@@ -35,9 +35,9 @@ from cnc_ptp.nc.expressions.values import Values, Variable, copies
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.execution import Limits
 from cnc_ptp.nc.flow.sections import Program
-from cnc_ptp.nc.interpreter import awaits_path, check, interpret, reads_the_run
+from cnc_ptp.nc.interpreter import CheckBlock, awaits_path, check, interpret
 from cnc_ptp.nc.measuring import measures
-from cnc_ptp.nc.parser import NO_FILES, parse_all, parse_program
+from cnc_ptp.nc.parser import NO_FILES, parse_program
 from cnc_ptp.nc.program import (
     Channel,
     FacingAxis,
@@ -51,7 +51,6 @@ from cnc_ptp.nc.program import (
 )
 from cnc_ptp.nc.program_text import ProgramText
 from cnc_ptp.nc.radius.radius_state import radius_settings
-from cnc_ptp.nc.recovery import MOST_ERRORS
 from cnc_ptp.nc.streamed_program import stream_program
 from cnc_ptp.nc.vocabularies import VOCABULARIES
 from cnc_ptp.parameters import (
@@ -198,13 +197,14 @@ class ProgramCheck:
         vocabulary: Vocabulary | None = None,
     ) -> list[ProgramError]:
         """Syntax and modal errors of a program, as if it were started from the start positions; as `check`."""
-        found = check(
+        return check(
             text,
             file,
             self._axis_names,
             self._spindles,
             start=self.start,
             check_target=partial(self.check_target, unlimited=self._names(self.unreferenced_at_start)),
+            check_blocks=self._block_check,
             centre_offset=self._channel.circle_center_tolerance,
             centre_offset_ratio=self._channel.circle_center_ratio,
             rotary=self._rotary,
@@ -219,42 +219,27 @@ class ProgramCheck:
             limits=self._limits,
             vocabulary=vocabulary or self.vocabulary,
         )
-        places = {(error.file, error.line) for error in found}
-        of_functions = self._function_errors(self.parsed(text, file, files, vocabulary or self.vocabulary))
-        return found + [error for error in of_functions if (error.file, error.line) not in places]
 
-    def parsed(self, text: str | ProgramText, file: str, files: Mapping[str, str], vocabulary: Vocabulary) -> Program:
-        """A program, whose faulty lines raise when they are reached."""
-        return parse_all(text, file, files=files, cycles=self.cycles, vocabulary=vocabulary)[0]
-
-    def _function_errors(self, program: Program) -> list[ProgramError]:
-        """Up to a homing or a line that reads what only the run knows; a measuring run is taken to reach its end."""
-        missing, state = self._names(self.unreferenced_at_start), self.state({}, {}, {})
-        found: dict[tuple[str, int], ProgramError] = {}
+    def _block_check(self) -> CheckBlock:
+        """What the machine does not have, block after block; threads up to a homing: then no position is known."""
+        missing, homed = self._names(self.unreferenced_at_start), False
         threads = self._thread_reading(self.start, missing)
 
-        def note(check: Callable[[], None], calls: Sequence[str]) -> None:
-            try:
-                check()
-            except ProgramError as error:
-                error.calls = list(calls)
-                found.setdefault((error.file, error.line), error)
+        def check_block(block: CanonicalBlock | None) -> None:
+            nonlocal homed
+            if block is None:
+                threads.finish()
+                return
+            motion, before = block.motion, threads.here
+            homed = homed or isinstance(motion, HomeAxes)
+            self._require_block(block, missing)
+            if homed:
+                return
+            if isinstance(motion, LinearMove) and motion.thread is not None:
+                self._require_thread(before, motion, motion.thread, block.source)
+            threads.take(block)
 
-        try:
-            for block in self._interpreted(
-                program, self.start, state, None, set(missing), required=False, checks=False
-            ):
-                note(partial(self._require_block, block, set(missing)), block.calls)
-                motion = block.motion
-                if isinstance(motion, LinearMove) and motion.thread is not None:
-                    note(partial(self._require_thread, threads.here, motion, motion.thread, block.source), block.calls)
-                note(partial(threads.take, block), block.calls)
-                if isinstance(block.motion, HomeAxes) or reads_the_run(block) or len(found) == MOST_ERRORS:
-                    break
-        except ProgramError:
-            pass  # it is among those that the interpretation has found
-        note(threads.finish, ())
-        return list(found.values())
+        return check_block
 
     @property
     def axis_names(self) -> tuple[str, ...]:
@@ -386,9 +371,8 @@ class ProgramCheck:
         missing: set[str],
         *,
         required: bool,
-        checks: bool = True,
     ) -> Iterator[CanonicalBlock]:
-        """`missing`: names of axes that are not referenced; homing takes them out. `checks`: as `_require_block`."""
+        """`missing`: names of axes that are not referenced; homing takes them out."""
         stream = interpret(
             program,
             tuple(start),
@@ -413,11 +397,10 @@ class ProgramCheck:
         )
         position = tuple(start)
         for block in stream:
-            if checks:
-                self._require_block(block, missing)
+            self._require_block(block, missing)
             if missing and required and isinstance(block.motion, (LinearMove, CircularMove)):
                 self._require_references(position, block.motion, block.source, missing)
-            if checks and isinstance(block.motion, LinearMove) and block.motion.thread is not None:
+            if isinstance(block.motion, LinearMove) and block.motion.thread is not None:
                 self._require_thread(position, block.motion, block.motion.thread, block.source)
             if isinstance(block.motion, (LinearMove, CircularMove)):
                 position = block.motion.target
@@ -431,6 +414,10 @@ class ProgramCheck:
             self._function(function, block.source)
         if isinstance(block.motion, LinearMove):
             self._require_measuring_axes(block.motion, block.source)
+        if isinstance(block.motion, (LinearMove, CircularMove)) and block.motion.kinematics is None:
+            contour = block.motion.transition.contour
+            if contour is not None and contour.mode == POS:
+                self.check_target(contour.point, block.source, missing)
         if isinstance(block.motion, HomeAxes):
             missing.difference_update(self._homed(block.motion, block.source))
 

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterable
 
 from rich.console import Console
 
 from cnc_ptp.errors import CncError
+from cnc_ptp.machine.run_entries import program_search
+from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.notes import Note
 
 RUN_FAILED = 1
@@ -63,3 +66,10 @@ def print_faults(
             console.print(str(note), style="yellow" if note.message_at is None else "", markup=False)
     if refused:
         console.print(f"{refused} {'command was' if refused == 1 else 'commands were'} refused", style="yellow")
+
+
+def print_missing_folders(machine: MachineParameters) -> None:
+    """Warns of search folders for programs (P-CHAN-90004) that are not there, on standard error."""
+    folders = {folder: None for channel in machine.channels for folder in program_search(machine, channel).missing}
+    for folder in folders:
+        print(f"warning: search folder {folder} (P-CHAN-90004) does not exist", file=sys.stderr)

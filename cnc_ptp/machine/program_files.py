@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from functools import partial
 from pathlib import Path
 from typing import Final, NamedTuple
 
 import cnc_ptp
 from cnc_ptp.errors import CncError
+from cnc_ptp.long_text import read_text
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.cycle_files import cycle_file
 from cnc_ptp.nc.flow.flow_faults import CYCLE_FILE, FILE_UNKNOWN
@@ -23,8 +23,6 @@ TOO_MANY_FILES = 26122
 MOST_FILES = 200
 """Programs that one program may call, directly or through others."""
 UTF_16: Final = "it is UTF-16 text; save it as UTF-8"
-PART: Final = 1 << 20
-"""Characters of a file that are read at once."""
 SHIPPED = Path(cnc_ptp.__path__[0]) / "nc" / "cycles"
 """Cycles that come with cnc_ptp; a program of the same name in the user's folder replaces one."""
 
@@ -40,10 +38,7 @@ _CYCLE_CODE = re.compile(r"G\s*(8\d)(?![\d.])", re.ASCII | re.IGNORECASE)
 def read_file(what: str, path: str) -> str:
     """Text of a file. Raises CncError 26110."""
     try:
-        with Path(path).open(encoding="utf-8") as stream:
-            text = ""
-            for part in iter(partial(stream.read, PART), ""):
-                text += part  # it grows in its place, so that a long text is in memory once
+        text = read_text(Path(path))
     except OSError as error:
         raise CncError(UNREADABLE, f"{what} {path} cannot be read: {error.strerror}", "nothing was started") from None
     except UnicodeDecodeError:

@@ -28,7 +28,7 @@ from cnc_ptp.nc.canonical import (
     WaitForPath,
     number,
 )
-from cnc_ptp.nc.contour import DEV, Transition
+from cnc_ptp.nc.contour import DEV, POS, Transition
 
 
 def format_block(block: CanonicalBlock) -> str:
@@ -150,6 +150,7 @@ def _transition(transition: Transition) -> str:
         contour = transition.contour
         values = [contour.path_dev] if contour.mode == DEV else [contour.pre_dist, contour.post_dist]
         text = f" {contour.mode} {_numbers(tuple(values))}"
+        text += f" by {_numbers(contour.point)}" if contour.mode == POS else ""
         text += "".join([f" {name} {number(value)}" for name, value in (("track", contour.track_dev),) if value])
     if transition.smoothing is not None:
         text += f" HSC {number(transition.smoothing.path_dev)}"

@@ -11,6 +11,8 @@ DEV: Final = "DEV"
 """The distance to the programmed path is given."""
 DIST: Final = "DIST"
 """Where the path is left and met again is given."""
+POS: Final = "POS"
+"""As DIST, and a point through which the curve goes."""
 
 
 class Contour(NamedTuple):
@@ -19,10 +21,11 @@ class Contour(NamedTuple):
     path_dev     PATH_DEV: largest distance of the path axes to the programmed path, mm; in DEV
     track_dev    TRACK_DEV: largest deviation of each other axis, mm or deg; 0 none is given:
                  a corner in which one of them has a kink gets no curve
-    pre_dist     PRE_DIST: mm of path length before the corner at which the path is left; in DIST
-    post_dist    POST_DIST: mm behind the corner at which it is met again; in DIST
+    pre_dist     PRE_DIST: mm of path length before the corner at which the path is left; in DIST and POS
+    post_dist    POST_DIST: mm behind the corner at which it is met again; in DIST and POS
     remain_part  REMAIN_PART: % of a block that its two corners leave as they are
     max_angle    MAX_ANGLE: largest change of direction between two lines at which there is a curve, deg; 0 always
+    point        X, Y, Z: the interim point in machine coordinates, one value for each axis of the channel; in POS
     """
 
     mode: str = DEV
@@ -32,6 +35,7 @@ class Contour(NamedTuple):
     post_dist: float = 1.0
     remain_part: float = 0.0
     max_angle: float = 0.0
+    point: tuple[float, ...] = ()
 
 
 DEFAULT_CONTOUR: Final = Contour()

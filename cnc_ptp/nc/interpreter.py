@@ -68,6 +68,8 @@ CENTRE_OFFSET_RATIO = 0.05
 LIMITS = Limits()
 
 CheckTarget = Callable[[tuple[float, ...], Source], None]
+CheckBlock = Callable[[CanonicalBlock | None], None]
+"""Raises ProgramError for a block that the machine cannot carry out; None comes behind the last one."""
 
 
 def interpret(
@@ -439,6 +441,16 @@ def _check_move(
         check_target(point, source)
 
 
+def _check_block(check_block: CheckBlock, block: CanonicalBlock | None, recovery: Recovery | None) -> None:
+    """Without `recovery` the error of a block comes out."""
+    try:
+        check_block(block)
+    except ProgramError as error:
+        if recovery is None:
+            raise
+        recovery.of_block(error, block)
+
+
 def check(
     text: str | ProgramText,
     file: str,
@@ -447,6 +459,7 @@ def check(
     *,
     start: tuple[float, ...] | None = None,
     check_target: CheckTarget | None = None,
+    check_blocks: Callable[[], CheckBlock] | None = None,
     centre_offset: float = CENTRE_OFFSET,
     centre_offset_ratio: float = CENTRE_OFFSET_RATIO,
     rotary: Collection[str] = (),
@@ -466,8 +479,8 @@ def check(
     The modal check runs the program from `start` (default 0); if there is an error once more, to continue behind it as
     Recovery says, which takes a copy of the state for each block. It ends at
     a line that reads what only the run knows, since everything after that would be a guess; so are targets after G74.
-    #ERROR that stops the program is an error. An error that `check_target` raises comes out as it is, unless it is a
-    ProgramError.
+    #ERROR that stops the program is an error. `check_blocks` gives a new check for each time that the program is run.
+    An error that `check_target` raises comes out as it is, unless it is a ProgramError.
     """
     program, errors = parse_all(text, file, files=files, cycles=cycles, vocabulary=vocabulary)
     begin = (0.0,) * len(axes) if start is None else start
@@ -504,12 +517,17 @@ def check(
             recovery=recovery if recovers else None,
         )
         failed = False
+        check_block = None if check_blocks is None else check_blocks()
         try:
             for block in blocks:
                 recovery.ordered(block)
+                if check_block is not None:
+                    _check_block(check_block, block, recovery if recovers else None)
                 homed = homed or isinstance(block.motion, HomeAxes)
                 if reads_the_run(block):
                     break
+            if check_block is not None:
+                _check_block(check_block, None, recovery if recovers else None)
         except ProgramError as error:
             failed = True
             if recovers:

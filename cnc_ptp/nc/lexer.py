@@ -410,7 +410,7 @@ _COMPUTED_OFFSET = re.compile(rf"\s*({_NAME})\s*\.\s*OFFSET\s*=?", re.ASCII)
 _SUFFIXES: Final = {"position": "POS", "offset": "OFFSET"}
 _VALUED = re.compile(r"\s*([GHM])\s*(\d{1,3})\s*=(?!=)", re.ASCII)
 _COMPUTED_WORD = re.compile(r"\s*([A-Z])\s*=?", re.ASCII)
-_COMPUTED_NAME = re.compile(rf"\s*({_NAME})\s*=(?!=)", re.ASCII)
+_COMPUTED_NAME = re.compile(rf"\s*(?![A-Z]\s*=)({_NAME})\s*=(?!=)", re.ASCII)
 _COMPUTED: Final = (
     (_COMPUTED_POSITION, "position"),
     (_COMPUTED_OFFSET, "offset"),

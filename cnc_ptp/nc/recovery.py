@@ -58,6 +58,14 @@ class Recovery:
             self._noted.append(error)
             self._take(error)
 
+    def of_block(self, error: ProgramError, block: CanonicalBlock | None) -> None:
+        """As `note`, of a block that was interpreted already; each of its lines counts.
+
+        None: behind the last block.
+        """
+        error.calls = [] if block is None else list(block.calls)
+        self._take(error)
+
     def go_on(self, error: ProgramError, execution: Execution, state: ModalState, before: ModalState | None) -> bool:
         """Whether the check continues behind an error.
 

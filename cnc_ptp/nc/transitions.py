@@ -6,7 +6,7 @@ from typing import Final
 
 from cnc_ptp.nc import faults
 from cnc_ptp.nc.canonical import number
-from cnc_ptp.nc.contour import DEV, DIST, EXACT_STOP, THROUGH, Smoothing, Transition
+from cnc_ptp.nc.contour import DEV, DIST, EXACT_STOP, POS, THROUGH, Contour, Smoothing, Transition
 from cnc_ptp.nc.expressions.nodes import Node
 from cnc_ptp.nc.flow.command_words import Words
 from cnc_ptp.nc.flow.lines import Flow, Line, Statement
@@ -17,9 +17,19 @@ LENGTHS: Final = ("PATH_DEV", "PRE_DIST", "POST_DIST")
 TOLERANCES: Final = (*LENGTHS, "TRACK_DEV")
 """Words that must be above 0."""
 OTHERS: Final = ("TRACK_DEV", "REMAIN_PART", "MAX_ANGLE")
-CONTOUR: Final = "#CONTOUR MODE [DEV PATH_DEV=0.01 TRACK_DEV=5] or [DIST PRE_DIST=1 POST_DIST=2], ON, OFF"
+MAIN_AXES: Final = "XYZ"
+"""Positions of the interim point."""
+CONTOUR: Final = (
+    "#CONTOUR MODE [DEV PATH_DEV=0.01 TRACK_DEV=5], [DIST PRE_DIST=1 POST_DIST=2] or"
+    " [POS PRE_DIST=1 POST_DIST=2 X10 Y5], ON, OFF"
+)
 SMOOTHING: Final = "#HSC ON [BSPLINE PATH_DEV=0.01 TRACK_DEV=5] or #HSC OFF"
-OF_MODE: Final = {DEV: ("PATH_DEV", *OTHERS), DIST: ("PRE_DIST", "POST_DIST", *OTHERS), "OFF": ()}
+OF_MODE: Final = {
+    DEV: ("PATH_DEV", *OTHERS),
+    DIST: ("PRE_DIST", "POST_DIST", *OTHERS),
+    POS: ("PRE_DIST", "POST_DIST", "REMAIN_PART", "MAX_ANGLE", *MAIN_AXES),
+    "OFF": (),
+}
 LARGEST: Final = {"REMAIN_PART": 100.0, "MAX_ANGLE": 180.0}
 
 
@@ -63,14 +73,35 @@ class ContourMode(Statement):
     def run(self, execution: Flow, line: Line) -> NcBlock | None:
         state = execution.values.state
         if self.mode:
-            given = values_of(execution, line, self.options)
-            fields = {word.lower(): value for word, value in given.items()}
-            state.contour = state.contour._replace(mode=self.mode, **fields)
+            options = {word: node for word, node in self.options.items() if word not in MAIN_AXES}
+            given = values_of(execution, line, options, at_corner=self.mode == POS)
+            fields = state.contour._asdict() | {word.lower(): value for word, value in given.items()}
+            state.contour = Contour(**fields)._replace(mode=self.mode)
+        if self.mode == POS:
+            state.contour = state.contour._replace(point=self.interim_point(execution, line))
         if self.switch == "OFF":
             through(state)
         elif self.switch == "ON" or state.transition.contour is not None:
             contouring(state)
         return None
+
+    def interim_point(self, execution: Flow, line: Line) -> tuple[float, ...]:
+        """In machine coordinates; an axis that is not given keeps its programmed position.
+
+        Raises ProgramError 20797 for an axis that the channel does not have.
+        """
+        values, state = execution.values, execution.values.state
+        point = list(state.programmed)
+        for axis, node in self.options.items():
+            if axis not in MAIN_AXES:
+                continue
+            place = values.channel.axis_index.get(axis)
+            if place is None:
+                known = ", ".join(values.channel.axes)
+                raise faults.AXIS_UNKNOWN.at(line.source, node.column, word=axis, known=known)
+            value = values.bounded(node.value(values), node.column, "the command")
+            point[place] = value * state.coordinates.unit
+        return tuple(point) if state.frame is None else state.frame.to_machine(point)
 
 
 class SmoothingMode(Statement):
@@ -95,17 +126,21 @@ class SmoothingMode(Statement):
         return None
 
 
-def values_of(execution: Flow, line: Line, options: dict[str, Node]) -> dict[str, float]:
-    """Values of options by their words."""
-    return {word: option(execution, line, word, node) for word, node in options.items()}
+def values_of(execution: Flow, line: Line, options: dict[str, Node], *, at_corner: bool = False) -> dict[str, float]:
+    """Values of options by their words. `at_corner`: the path may be left and met in the corner itself."""
+    above = () if at_corner else TOLERANCES
+    return {word: option(execution, line, word, node, above) for word, node in options.items()}
 
 
-def option(execution: Flow, line: Line, word: str, node: Node) -> float:
-    """Value of an option, mm, % or deg. Raises ProgramError for one that is not above 0, or above its limit."""
+def option(execution: Flow, line: Line, word: str, node: Node, above: tuple[str, ...] = TOLERANCES) -> float:
+    """Value of an option, mm, % or deg; of those in `above` it must be greater than 0.
+
+    Raises ProgramError for one that is too small or above its limit.
+    """
     values = execution.values
     value = values.bounded(node.value(values), node.column, "the command")
-    if value < 0.0 or (value == 0.0 and word in TOLERANCES):
-        least = "above 0" if word in TOLERANCES else "at least 0"
+    if value < 0.0 or (value == 0.0 and word in above):
+        least = "above 0" if word in above else "at least 0"
         raise faults.OPTION_TOO_SMALL.at(line.source, node.column, word=word, value=number(value), least=least)
     limit = LARGEST.get(word, value)
     if value > limit:
@@ -119,10 +154,14 @@ def read_contour_mode(line: Line, text: str, end: int, column: int) -> None:
     mode = ""
     options: dict[str, Node] = {}
     if not words.at_end and switch != "OFF":
-        mode, options = words.bracket((DEV, DIST) if switch else (DEV, DIST, "OFF"), (*LENGTHS, *OTHERS))
+        mode, options = words.bracket(
+            (DEV, DIST, POS) if switch else (DEV, DIST, POS, "OFF"), (*LENGTHS, *OTHERS), MAIN_AXES
+        )
         mode = mode or DEV
     elif not switch:
         raise words.missing("values in brackets, ON or OFF")
+    if mode == POS and not set(MAIN_AXES) & set(options):
+        raise words.missing("an interim point (X, Y, Z)")
     words.require_end()
     for word, node in options.items():
         if word not in OF_MODE[mode]:

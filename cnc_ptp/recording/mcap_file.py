@@ -177,7 +177,7 @@ class McapFile:
         chunk = self._chunk
         if chunk.message_count:
             self._chunk = _OpenChunk()
-            self._closed_chunk = chunk, self._worker.submit(self._compress, b"".join(chunk.parts))
+            self._closed_chunk = chunk, self._worker.submit(self._compress, chunk)
 
     @property
     def chunk_ready(self) -> bool:
@@ -237,8 +237,17 @@ class McapFile:
     ) -> None:
         self.close()
 
-    def _compress(self, data: bytes) -> tuple[bytes, int]:
-        return self._compressor.compress(data), zlib.crc32(data)
+    def _compress(self, chunk: _OpenChunk) -> tuple[bytes, int]:
+        """The records of a chunk compressed, part by part, and their crc; the parts are given free."""
+        compression = self._compressor.compressobj(size=chunk.size)
+        compressed, crc = [], 0
+        parts, chunk.parts = chunk.parts[::-1], []
+        while parts:
+            part = parts.pop()
+            compressed.append(compression.compress(part))
+            crc = zlib.crc32(part, crc)
+        compressed.append(compression.flush())
+        return b"".join(compressed), crc
 
     def _write_summary(self) -> None:
         self.statistics.schema_count = len(self._schemas)

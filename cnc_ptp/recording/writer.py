@@ -67,7 +67,10 @@ class _Ready:
         result: list[tuple[Bytes, Times]] = []
         for _, group in groupby(collected, key=lambda message: len(message[1])):
             times, contents = zip(*group, strict=True)
-            joined = bytearray().join(ROOM + content for content in contents)
+            joined = bytearray()
+            for content in contents:
+                joined += ROOM
+                joined += content
             rows = np.frombuffer(joined, dtype=np.uint8).reshape(len(contents), -1)
             result.append((rows, np.array(times, dtype=np.uint64)))
         return result
@@ -94,7 +97,7 @@ class _Topic:
         self._items.append(item)
 
     def take(self) -> list[tuple[_Encoder, list[Any]]]:
-        runs, self.runs, self._encoder = self.runs, [], None
+        runs, self.runs, self._encoder, self._items = self.runs, [], None, []
         return runs
 
 
@@ -307,7 +310,9 @@ class Recording:
 
     def _hand_over(self) -> None:
         for topic in self._topics.values():
-            for encoder, collected in topic.take():
+            runs = topic.take()[::-1]
+            while runs:
+                encoder, collected = runs.pop()
                 for rows, times in encoder.messages(collected, self.stamps):
                     self._file.messages(topic.channel_id, rows, times)
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -58,6 +58,10 @@ class Place:
     count: int | None
 
 
+TEXT_PART: Final = 1 << 16
+"""Characters."""
+
+
 class _Writer:
     """Walks a message and its schema; appends CDR and notes the places of numbers."""
 
@@ -93,15 +97,22 @@ class _Writer:
 
     def single(self, type_name: str, value: Any, name: str) -> None:
         if type_name == "string":
-            content = value.encode() + b"\0"
-            self.numbers("I", [len(content)])
-            self.data += content
+            self.text(value)
         elif type_name in PRIMITIVES:
             self.align(SIZES[PRIMITIVES[type_name]])
             self.places.append(Place(name, len(self.data), PRIMITIVES[type_name], None))
             self.data += struct.pack(f"<{PRIMITIVES[type_name]}", value)
         else:
             self.message(type_name, value, f"{name}.")
+
+    def text(self, value: str) -> None:
+        """Part by part: the text of a program may be long, and needs no second copy."""
+        self.numbers("I", [0])
+        begin = len(self.data)
+        for part in range(0, len(value), TEXT_PART):
+            self.data += value[part : part + TEXT_PART].encode()
+        self.data += b"\0"
+        struct.pack_into("<I", self.data, begin - 4, len(self.data) - begin)
 
     def numbers(self, code: str, values: Any, name: str = "") -> None:
         """Numbers without gaps; with a name they are noted as one run."""

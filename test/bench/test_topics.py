@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from bench import control, graph, interpreter, lookahead, motion, offline, recording, smoothing, spindles
+from bench import control, graph, interpreter, lookahead, motion, offline, recording, smoothing, spindles, streaming
 from bench.figures import Effort
 from bench.graph_run import SUPERVISOR, GraphRun, Watch, node_name, run_graph
 from bench.jobs import MACHINE, long_program
@@ -17,7 +17,9 @@ from cnc_ptp.parameters import read_machine
 SMALLEST = Effort(runs=1, size=0.002, graph_seconds=1.0)
 
 
-@pytest.mark.parametrize("topic", [interpreter, motion, control, smoothing, lookahead, recording, offline, spindles])
+@pytest.mark.parametrize(
+    "topic", [interpreter, motion, control, smoothing, lookahead, streaming, recording, offline, spindles]
+)
 def test_topic_yields_figures(topic) -> None:
     said: list[str] = []
     figures = list(topic.figures(SMALLEST, said.append))

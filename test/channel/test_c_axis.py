@@ -175,6 +175,14 @@ def test_tapping_before_and_after() -> None:
     assert bench.column("s", "set_position_deg")[-1] == pytest.approx(90.0 + 10.0 / 1.25 * 360.0)
 
 
+def test_a_thread_before_and_after() -> None:
+    thread = "M03 S500 G00 X40 Z60\nG33 Z48 K1.5\nG00 X50\nM05\n"
+    bench = run(f"{thread}#CAX [S, C]\nG00 C90\n#CAX OFF\n{thread}M30\n")
+    assert errors(bench) == []
+    assert bench.column("z", "set_position")[-1] == pytest.approx(48.0)
+    assert bench.blocks["channel"][-1].done
+
+
 def test_offset_of_the_c_axis() -> None:
     bench = run("#CAX\nG92 C10\nG01 C90 F6000\nM30\n")
     assert bench.column("s", "set_position_deg")[-1] == pytest.approx(100.0)

@@ -232,7 +232,7 @@ M30
 def test_face_machining_is_drawn_in_its_coordinates(tmp_path: Path) -> None:
     program, page = tmp_path / "face.nc", tmp_path / "face.html"
     program.write_text(FACE)
-    result = call("plot", program, "--machine", "examples/lathe_c.yaml", "-o", page)
+    result = call("plot", program, "--machine", "config/lathe.yaml", "-o", page)
     assert result.exit_code == 0, result.output
     text = page.read_text()
     assert "<h2>Front face</h2>" in text

@@ -143,3 +143,8 @@ def test_the_limit_of_repeats_is_a_parameter(count):
 
 def test_the_unit_of_lengths_is_read():
     assert lines("G71\nX[V.G.MASS_MM + 1]\nG70\nX[V.G.MASS_MM]") == ["rapid (1, 0, 0)", "rapid (25.4, 0, 0)"]
+
+
+@pytest.mark.parametrize("word", ["F=1000/2", "F=[500]", "F=P1 + 250", "F[1000/2]"])
+def test_a_word_takes_an_expression_behind_its_equals_sign(word):
+    assert lines(f"P1 = 250\nG01 X1 {word}") == ["line (1, 0, 0) feed 8.333333"]

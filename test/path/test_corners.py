@@ -9,7 +9,7 @@ import random
 import numpy as np
 import pytest
 
-from cnc_ptp.nc.contour import DIST, Contour
+from cnc_ptp.nc.contour import DIST, POS, Contour
 from cnc_ptp.path import Arc, AxisLimits, Line
 from cnc_ptp.path.cubic import Cubic
 from cnc_ptp.path.lookahead.corners import EVEN, UNEVEN, corner, curve, kink_square, room
@@ -421,3 +421,28 @@ def test_a_span_is_its_part_of_the_element():
         assert span.bounds(0.0, u) == element.bounds(begin, begin + u)
         assert span.speed(u, XYZ) == element.speed(begin + u, XYZ)
         assert tuple(axis[0] for axis in span.shape(span.length)) == element.target
+
+
+@pytest.mark.parametrize(("before", "after"), [(2.0, 3.0), (0.0, 0.0), (0.0, 1.0)])
+@pytest.mark.parametrize("point", [(9.0, 1.0, 0.0), (12.0, -2.0, 0.5)])
+def test_the_curve_goes_through_its_interim_point(before, after, point):
+    contour = Contour(mode=POS, pre_dist=before, post_dist=after, point=point)
+    first, curves, last = corner_of((0, 0, 0), (10, 0, 0), (10, 10, 0), contour=contour)
+    assert first.length == 10.0 - before and last.length == 10.0 - after
+    assert [span.block for span in curves] == [0, 0, 0, 1, 1, 1]
+    assert curves[3].shape(0.0)[0][0] == pytest.approx(point[0], abs=1e-12)
+    assert [axis[0] for axis in curves[3].shape(0.0)] == pytest.approx(point, abs=1e-12)
+    for span, following in itertools.pairwise([first, *curves, last]):
+        for one, other in zip(span.shape(span.length), following.shape(0.0), strict=True):
+            assert one[:3] == pytest.approx(other[:3], abs=1e-9)
+
+
+def test_no_curve_through_a_point_where_the_path_is_left_or_met():
+    contour = Contour(mode=POS, pre_dist=2.0, post_dist=3.0, point=(8.0, 0.0, 0.0))
+    assert corner_of((0, 0, 0), (10, 0, 0), (10, 10, 0), contour=contour) is None
+    assert corner_of((0, 0, 0), (10, 0, 0), (10, 10, 0), contour=contour._replace(point=(10.0, 3.0, 0.0))) is None
+
+
+def test_no_curve_through_a_point_with_a_kink_of_another_axis():
+    contour = Contour(mode=POS, track_dev=1.0, point=(9.0, 1.0, 0.0, 0.0))
+    assert corner_of((0, 0, 0, 0), (10, 0, 0, 0), (10, 10, 0, 5), contour=contour) is None

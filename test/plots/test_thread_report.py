@@ -21,7 +21,7 @@ from cnc_ptp.recording.surfaces import surfaces
 from cnc_ptp.recording.thread_passes import phase_against, thread_passes
 from cnc_ptp.recording.writer import Recording
 
-LATHE, LATHE_C = ROOT / "config" / "lathe.yaml", ROOT / "examples" / "lathe_c.yaml"
+LATHE = ROOT / "config" / "lathe.yaml"
 TWO_STARTS = """%T
 G18 G90 M03 S400
 G00 X36 Z105
@@ -73,7 +73,7 @@ def threads(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def workpiece(tmp_path_factory):
-    return record(tmp_path_factory.mktemp("surfaces") / "run.mcap", LATHE_C, SURFACES)
+    return record(tmp_path_factory.mktemp("surfaces") / "run.mcap", LATHE, SURFACES)
 
 
 def headings(page: str) -> list[str]:

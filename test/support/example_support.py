@@ -21,10 +21,10 @@ CYCLE_TIME = 0.001
 class ExampleRun(MachineBench):
     """A run to its end; columns, records, events and blocks as on the bench."""
 
-    def __init__(self, machine: str, program: str = "", scenario: str = "") -> None:
+    def __init__(self, machine: str, program: str = "", scenario: str = "", dialect: str | None = None) -> None:
         self.machine = read_machine(EXAMPLES / machine)
         files = (str(EXAMPLES / name) if name else None for name in (program, scenario))
-        job = read_entries(self.machine, **dict(zip(("program", "scenario"), files, strict=True)))
+        job = read_entries(self.machine, **dict(zip(("program", "scenario"), files, strict=True)), dialect=dialect)
         self.units = build_units(self.machine, scenario=job)
         self.offline = OfflineMachine(self.machine, self.units)
         self.blocks: dict[str, list[Any]] = {name: [] for name in self.units}

@@ -97,9 +97,11 @@ class Segment:
 
         The centre of an arc is moved to the same distance from both ends (P-CHAN-00059): the further, the closer they are.
         """
+        if not self.arc:
+            return ROUNDING
         first, second = self.plane
         chord = float(np.hypot(self.end[first] - self.start[first], self.end[second] - self.start[second]))
-        if not self.arc or chord == 0.0:
+        if chord == 0.0:
             return ROUNDING
         radius = self.radius(self.start)
         return ROUNDING + 2.0 * abs(self.radius(self.end) - radius) * radius / chord
@@ -154,7 +156,7 @@ class PathChecker:
     def check(self, run: Run, *, complete: bool = True) -> Findings:
         """`complete`: the run reaches the end of the program; else it may stop anywhere."""
         found = Findings()
-        self._limits(run, found)
+        self.limits(run, found)
         first, last = self._assigned(run, found, complete=complete)
         if first is not None and last is not None:
             self._feeds(run, first, last, found)
@@ -164,7 +166,8 @@ class PathChecker:
 
     # limits
 
-    def _limits(self, run: Run, found: Findings) -> None:
+    def limits(self, run: Run, found: Findings) -> None:
+        """Velocity, acceleration and jerk of each axis."""
         for n, axis in enumerate(self.axes):
             p, v, a, j = (each[:, n] for each in (run.position, run.velocity, run.acceleration, run.jerk))
             name, strongest = f"axis {n}", max(axis.acceleration, axis.deceleration)

@@ -191,7 +191,7 @@ def struct_reason(code, value):
         ("float64[3] a\n", {"a": [1.0]}, "a holds 1 values instead of 3"),
         ("uint8 a\n", {}, "'a'"),
         ("uint8 a\n", SimpleNamespace(), "'types.SimpleNamespace' object has no attribute 'a'"),
-        ("string a\n", {"a": None}, "'NoneType' object has no attribute 'encode'"),
+        ("string a\n", {"a": None}, "object of type 'NoneType' has no len()"),
     ],
 )
 def test_values_that_do_not_fit_are_refused(text, value, reason):

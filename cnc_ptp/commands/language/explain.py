@@ -11,20 +11,20 @@ from cnc_ptp.commands.language.words import Entry, find
 def explain(words: Sequence[str], dialect: str = "twincat") -> int:
     """Prints syntax, meaning, group and an example of each word. Raises CncError 26123."""
     found = [entry for word in words for entry in find(word, dialect)]
-    print("\n\n".join("\n".join(lines(entry)) for entry in found))
+    print("\n\n".join("\n".join(lines(entry, dialect)) for entry in found))
     return 0
 
 
-def lines(entry: Entry) -> Iterator[str]:
+def lines(entry: Entry, dialect: str) -> Iterator[str]:
     """The text about one word."""
     yield f"{entry.name} ({entry.kind})"
     yield f"  syntax:   {entry.explanation.syntax}"
     yield f"  meaning:  {entry.explanation.meaning}"
     if entry.group:
         yield f"  group:    {entry.group}, {'modal' if entry.modal else 'for its block'}"
-    if entry.explanation.example:
-        yield f"  example:  {entry.explanation.example}"
-    texts = error_texts() if entry.errors else {}
+    for index, line in enumerate(entry.explanation.example.splitlines()):
+        yield f"  {'' if index else 'example:':9} {line}"
+    texts = error_texts(dialect) if entry.errors else {}
     for index, number in enumerate(entry.errors):
         yield f"  {'' if index else 'errors:':9} {number} {texts[number]}"
     if entry.later:

@@ -29,7 +29,7 @@ RULES = {
     "numbers": "real; an integer is a real number without decimals; `'H2FF'` hexadecimal, `'B1001'` binary",
     "truth": "TRUE is 1, FALSE is 0; a number is true from 1/2 on",
     "angles": "degrees; SIN and COS are exact at the multiples of 30° where they are 0, ±1/2, ±1",
-    "brackets": "`[ ]` in expressions; `( )` and `;` are comments, `(` must be closed in its line",
+    "brackets": "`[ ]` in expressions; `( )` and `;` are comments, without `)` to the end of the line",
     "operators, weak to strong": "`||` OR · XOR · `&&` AND · `== != < <= > >=` · `|` · `^` · `&` · `+ -` · `* / MOD` · "
     "sign · `**`",
     "words with expressions": "`X[P1 + 5]`, `XP1`, `X=P1 + 5`, `X SIN[30]`, `S[M3 REV=P1]`, `G[P1]`",
@@ -79,22 +79,22 @@ def reference_markdown(dialect: str = "twincat") -> str:
     introduction, chosen = (INTRODUCTION, RULES) if dialect == "twincat" else (ISO_INTRODUCTION, ISO_RULES)
     rules = [f"| {what} | {escaped(rule)} |" for what, rule in chosen.items()]
     lines = [introduction.rstrip(), *rules, "", *section_lines(dialect)]
-    return "\n".join(lines + (list(error_lines()) if dialect == "twincat" else []))
+    return "\n".join([*lines, *error_lines(dialect)])
 
 
-def error_lines() -> Iterator[str]:
+def error_lines(dialect: str) -> Iterator[str]:
     """The errors with their texts; first those that belong to no single word."""
     yield "## Errors"
     yield "The tables above name by number the errors of each word. Besides these there are:"
     yield ""
     yield "| in | errors |"
     yield "|---|---|"
-    for key in GENERAL:
-        yield f"| {key} | {', '.join(map(str, sorted(errors_by_key()[key])))} |"
+    listed = errors_by_key(dialect)
+    yield from (f"| {key} | {', '.join(map(str, sorted(listed[key])))} |" for key in GENERAL if key in listed)
     yield ""
     yield "| number | text |"
     yield "|---|---|"
-    yield from (f"| {number} | {escaped(text)} |" for number, text in sorted(error_texts().items()))
+    yield from (f"| {number} | {escaped(text)} |" for number, text in sorted(error_texts(dialect).items()))
     yield ""
 
 
@@ -104,29 +104,29 @@ def section_lines(dialect: str) -> Iterator[str]:
         chosen = [entry for entry in all_entries if entry.kind == kind]
         if not chosen:
             continue
-        grouped, errors = kind in ("G function", "M function"), dialect == "twincat"
+        grouped = kind in ("G function", "M function")
         columns = [
             "code" if grouped else "name",
             "syntax",
             *["group"] * grouped,
             "meaning",
             "example",
-            *["errors"] * errors,
+            "errors",
         ]
         yield f"## {title}"
         yield f"| {' | '.join(columns)} |"
         yield "|" + "---|" * len(columns)
-        yield from (row(entry, grouped=grouped, errors=errors) for entry in chosen)
+        yield from (row(entry, grouped=grouped) for entry in chosen)
         yield ""
 
 
-def row(entry: Entry, *, grouped: bool, errors: bool) -> str:
+def row(entry: Entry, *, grouped: bool) -> str:
     text = entry.explanation
     meaning = f"{text.meaning} **Not available yet.**" if entry.later else text.meaning
     group = [entry.group if entry.modal or not entry.group else f"{entry.group} (block)"] if grouped else []
-    example = f"`{text.example}`" if text.example else ""
-    numbers = [", ".join(map(str, entry.errors))] if errors else []
-    cells = [entry.name, f"`{text.syntax}`", *group, meaning, example, *numbers]
+    example = "<br>".join(f"`{line}`" for line in text.example.splitlines())
+    numbers = ", ".join(map(str, entry.errors))
+    cells = [entry.name, f"`{text.syntax}`", *group, meaning, example, numbers]
     return "| " + " | ".join(map(escaped, cells)) + " |"
 
 

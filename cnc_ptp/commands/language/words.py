@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -20,7 +21,7 @@ UNKNOWN_WORD = 26123
 
 
 class Explanation(NamedTuple):
-    """A row of explanations.yaml; `meaning`: one sentence or a few."""
+    """A row of explanations.yaml; `meaning`: one sentence or a few, `example`: lines of a program."""
 
     syntax: str
     meaning: str
@@ -49,6 +50,14 @@ def explanations(dialect: str = "twincat") -> dict[str, dict[Any, Explanation]]:
     return {kind: {word: Explanation(*row) for word, row in rows.items()} for kind, rows in sections.items()}
 
 
+def examples() -> dict[str, dict[str, str]]:
+    """By kind and name those of words whose other texts are beside their code."""
+    loaded: dict[str, dict[str, str]] = yaml_text.load(
+        Path(__file__).with_name("examples.yaml").read_text(encoding="utf-8")
+    )
+    return loaded
+
+
 def entries(dialect: str = "twincat") -> list[Entry]:
     """All words of a vocabulary in the order of the reference."""
     texts, vocabulary = explanations(dialect), VOCABULARIES[dialect]
@@ -57,7 +66,8 @@ def entries(dialect: str = "twincat") -> list[Entry]:
     found = [g_entry(vocabulary.g_codes[float(number)], codes[number], blockwise) for number in sorted(codes)]
     found += [m_entry(vocabulary, number, text) for number, text in texts["M function"].items()]
     if dialect == "iso":
-        return found + [Entry(name, "word", text) for name, text in texts["word"].items()]
+        found += [Entry(name, "word", text) for name, text in texts["word"].items()]
+        return [entry._replace(errors=tuple(errors_of(entry.name, entry.kind, dialect))) for entry in found]
     for kind in ("word", "operator", "control statement"):
         found += [Entry(name, kind, text) for name, text in texts[kind].items()]
     found += [Entry(f"#{name}", "command", text) for name, text in texts["command"].items()]
@@ -65,6 +75,8 @@ def entries(dialect: str = "twincat") -> list[Entry]:
     found += [Entry(name, "function", function_text(TEXTUAL[name].text)) for name in TEXTUAL]
     found += [Entry(name, "constant", Explanation(name, f"{value:.6g}")) for name, value in CONSTANTS.items()]
     found += [readable_entry(name) for name in READABLE]
+    shown = examples()
+    found = [with_listed_example(entry, shown.get(entry.kind, {})) for entry in found]
     return [entry._replace(errors=tuple(errors_of(entry.name, entry.kind))) for entry in found]
 
 
@@ -72,14 +84,20 @@ def m_entry(vocabulary: Vocabulary, number: int, text: Explanation) -> Entry:
     code = vocabulary.m_codes.get(number)
     group = code.group if code is not None else "gear" if number in GEAR_M else ""
     modal = group in ("spindle", "gear")
-    if code is None or code.flow != "return":
-        text = with_example(code_name("M", number), text)
-    return Entry(code_name("M", number), "M function", text, group, modal)
+    return Entry(code_name("M", number), "M function", with_example(text), group, modal)
 
 
-def with_example(name: str, text: Explanation) -> Explanation:
+def with_example(text: Explanation) -> Explanation:
     """A code that stands alone is its own example."""
-    return text._replace(example=name) if text.syntax == name and not text.example else text
+    alone = re.fullmatch(r"[GM][\d.]+", text.syntax)
+    return text._replace(example=text.syntax) if alone and not text.example else text
+
+
+def with_listed_example(entry: Entry, listed: Mapping[str, str]) -> Entry:
+    """With that of examples.yaml."""
+    if entry.name not in listed:
+        return entry
+    return entry._replace(explanation=entry.explanation._replace(example=listed[entry.name]))
 
 
 def readable_entry(name: str) -> Entry:
@@ -94,7 +112,7 @@ def readable_entry(name: str) -> Entry:
 
 def g_entry(code: GCode, text: Explanation, blockwise: tuple[int, ...]) -> Entry:
     modal = code.modal and not (code.function is not None or code.spindle or code.number in blockwise)
-    text = text if code.later else with_example(code.name, text)
+    text = text if code.later else with_example(text)
     return Entry(code.name, "G function", text, code.group, modal, code.later)
 
 

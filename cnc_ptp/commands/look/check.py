@@ -13,7 +13,7 @@ from rich.console import Console
 
 from cnc_ptp.channel.program_check import ProgramCheck
 from cnc_ptp.channel.program_start import ProgramStart
-from cnc_ptp.commands.console import print_error
+from cnc_ptp.commands.console import print_error, print_missing_folders
 from cnc_ptp.errors import WRONG_INPUT, CncError
 from cnc_ptp.machine.program_files import NO_SEARCH, Search, is_longer, read_program, scan_program
 from cnc_ptp.machine.run_entries import program_search
@@ -59,8 +59,7 @@ def check(
     checked = None if parameters is None else ProgramCheck.of_first_channel(parameters, program)
     if parameters is not None:
         print_notices(parameters)
-        for folder in search.missing:
-            print(f"warning: search folder {folder} (P-CHAN-90004) does not exist", file=sys.stderr)
+        print_missing_folders(parameters)
     limit = CHECKED_TEXT if checked is None else checked.checked_text
     if begin is None and not canonical and not as_subroutine and is_longer(program, limit):
         return check_file(program, checked, search, dialect)

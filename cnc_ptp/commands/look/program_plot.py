@@ -9,7 +9,7 @@ import numpy as np
 
 from cnc_ptp.channel.channel_unit import BAD_OVERRIDE
 from cnc_ptp.commands.commissioning.trial_run import Columns, Trial, run_trial
-from cnc_ptp.commands.console import RUN_FAILED
+from cnc_ptp.commands.console import RUN_FAILED, print_missing_folders
 from cnc_ptp.commands.output_file import check_page, write_output
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.run_entries import read_entries
@@ -55,6 +55,7 @@ def plot_program(
     output = output or str(Path(program).with_suffix(".html"))
     check_page(output, machine_file=machine, NC_program=program)
     parameters = read_machine(machine)
+    print_missing_folders(parameters)
     job = read_entries(parameters, program=program, scenario=None, dialect=dialect)
     channel = next(iter(parameters.channels.values()))
     if override > channel.max_override_percent:

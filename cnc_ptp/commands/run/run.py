@@ -6,7 +6,7 @@ from rich.console import Console
 
 from cnc_ptp import KERNEL
 from cnc_ptp.channel.program_report import cut_off_notes, time_lines
-from cnc_ptp.commands.console import RUN_FAILED, print_faults, print_note_of_idle_run
+from cnc_ptp.commands.console import RUN_FAILED, print_faults, print_missing_folders, print_note_of_idle_run
 from cnc_ptp.commands.output_file import check_recording
 from cnc_ptp.commands.run.progress import RunProgress
 from cnc_ptp.machine.run_entries import read_entries
@@ -39,6 +39,7 @@ def run(
     """
     check_recording(record, machine_file=machine, NC_program=program, scenario=scenario)
     parameters = read_machine(machine)
+    print_missing_folders(parameters)
     read_entries(parameters, program=program, scenario=scenario, dialect=dialect, begin=begin)
     options = RunOptions(machine, program, scenario, duration, record, free_run, stay, state_rate, dialect, begin)
     with RunProgress() as progress:

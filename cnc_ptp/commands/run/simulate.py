@@ -12,7 +12,13 @@ from rich.console import Console
 
 from cnc_ptp import KERNEL
 from cnc_ptp.channel.program_report import ProgramReport, cut_off_notes, time_lines
-from cnc_ptp.commands.console import RUN_FAILED, print_error, print_faults, print_note_of_idle_run
+from cnc_ptp.commands.console import (
+    RUN_FAILED,
+    print_error,
+    print_faults,
+    print_missing_folders,
+    print_note_of_idle_run,
+)
 from cnc_ptp.commands.output_file import check_recording
 from cnc_ptp.commands.run.progress import RunProgress
 from cnc_ptp.errors import CncError
@@ -80,6 +86,7 @@ def simulate(
     """Runs offline; prints a summary. Status 1 when a unit ended in error, with `strict` also for a refused command."""
     check_recording(record, machine_file=machine, NC_program=program, scenario=scenario)
     parameters = read_machine(machine)
+    print_missing_folders(parameters)
     job = read_entries(parameters, program=program, scenario=scenario, dialect=dialect, begin=begin)
     offline = OfflineMachine(parameters, build_units(parameters, scenario=job, end_when_idle=duration is None))
     cycles = None if duration is None else round(duration * 1e6 / parameters.cycle_time_us)

@@ -20,7 +20,7 @@ TEXT_OPEN = Fault(21407, "the text in quotation marks is not closed in its line"
 READING_FORM = Fault(21439, "'{word}' is not complete or has too much: it is written {forms}")
 NOT_ASSIGNABLE = Fault(21408, "{name} can be read only")
 EQUALS_FOR_COMPARISON = Fault(21409, "'=' assigns; two values are compared by '=='")
-HEXADECIMAL = Fault(21410, "'{word}' is no hexadecimal number")
+HEXADECIMAL = Fault(21410, "{word} is no hexadecimal or binary number, as in 'H2FF' or 'B1001'")
 
 # While it is executed
 DIVISION_BY_ZERO = Fault(20396, "division by 0")

@@ -59,8 +59,13 @@ class Words:
             return {}
         return self.bracket((), names)[1]
 
-    def bracket(self, keywords: Sequence[str], names: Sequence[str]) -> tuple[str, dict[str, Node]]:
-        """`[DEV PATH_DEV=0.01 TRACK_DEV=5]`: a keyword, if there is one, and options in any order."""
+    def bracket(
+        self, keywords: Sequence[str], names: Sequence[str], positions: str = ""
+    ) -> tuple[str, dict[str, Node]]:
+        """`[DEV PATH_DEV=0.01 TRACK_DEV=5]`: a keyword, if there is one, and options in any order.
+
+        `positions`: letters of axes whose positions are options, too: X10, X=10.
+        """
         opened = self.reader.skip_blanks()
         if not self.reader.follows("["):
             raise self.stray()
@@ -70,6 +75,12 @@ class Words:
             self.reader.follows(",")
             if self.at_end:
                 self.reader.close(opened)
+            letter = self.reader.line[self.reader.skip_blanks()]
+            if letter in positions and letter not in found:
+                self.reader.at = self.reader.skip_blanks() + 1
+                self.reader.follows("=")
+                found[letter] = self.reader.expression()
+                continue
             name = self.takes(*[each for each in names if each not in found])
             if not name or not self.reader.follows("="):
                 raise self.stray()

@@ -77,6 +77,7 @@ def drill(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> N
     if code.number == 86:
         _require_turning(channel, state, block, code)
     elif code.number in TAPPING:
+        _take_speed(channel, state, block)
         tapping.require_main(channel, state, block, code)
     state.following = _holes(channel, state, hole, target, step, _repeats(block, code, words, hole), work)
 
@@ -137,9 +138,18 @@ def _repeats(block: NcBlock, code: GCode, words: dict[str, float], hole: Hole) -
     return repeats
 
 
+def _take_speed(channel: Channel, state: ModalState, block: NcBlock) -> None:
+    """S of the block counts for its thread; the function itself is made behind the motions."""
+    if "S" in block.words and channel.table.spindles:
+        state.speeds[current_main(channel, state).key] = block.words["S"]
+
+
 def _require_turning(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> None:
+    """The M functions of the block act before its motions."""
     require_spindle(channel, block, code.name)
-    if current_main(channel, state).key not in state.spindle.turning:
+    commanded = [each.number for each in block.m]
+    turns = current_main(channel, state).key in state.spindle.turning and 5 not in commanded and 19 not in commanded
+    if not turns and 3 not in commanded and 4 not in commanded:
         raise faults.SPINDLE_STANDS.at(block.source, block.source.column(code.name), g=code.name)
 
 

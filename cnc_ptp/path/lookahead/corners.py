@@ -14,6 +14,13 @@ at equal u, by the jumps of q1, q2, q3 in the corner and by the fourth derivativ
     deviation <= c1·d·|Δq1| + c2·d²·|Δq2| + c3·d³·|Δq3| + c4·d⁴·(|q4| of A + |q4| of B)        d = max(dA, dB)
 
 where each c is the largest that its part becomes along the curve. Between two lines it is exactly 13/72·d·|Δq1|.
+
+With an interim point (POS) there is such a curve on each of its sides, as long as its chord, l1 and l2. Direction s and
+M at the point y are those of two polynomials of fourth degree with continuous q, q1, q2, which the manual has there:
+
+    d1 = y - y0 - s0·l1 - M0·l1²/2        d2 = y - y3 + s3·l2 - M3·l2²/2
+    s·(6/l1 + 6/l2) = 12·d1/l1² - 12·d2/l2² + 6·s0/l1 + 6·s3/l2 + 5·(M0 - M3)
+    M = -12·d1/l1² + 6·(s - s0)/l1 - 5·M0
 """
 
 from __future__ import annotations
@@ -23,7 +30,7 @@ from math import asin, cbrt, degrees, inf, pi, sqrt
 from typing import Final
 
 from cnc_ptp.kinematics.kinematics import Kinematics, Point
-from cnc_ptp.nc.contour import DIST, Contour
+from cnc_ptp.nc.contour import DIST, POS, Contour
 from cnc_ptp.path.cubic import Cubic
 from cnc_ptp.path.geometry import NEGLIGIBLE_MM, Arc, AxisLimits, Line
 from cnc_ptp.path.lookahead.spans import Curve, Span, whole
@@ -57,7 +64,7 @@ def corner(a: Span, b: Span, contour: Contour, path_axes: Sequence[int]) -> Corn
 
     The first piece belongs to the block of A, the others to that of B. None if there can be no curve: the path reverses
     or rests on one side, a block is too short, the angle is above MAX_ANGLE, or an axis beside those of the path has a
-    kink and there is no TRACK_DEV.
+    kink and there is no TRACK_DEV. With an interim point also if it is where the path is left or met.
     """
     end, start = a.shape(a.length), b.shape(0.0)
     kinks, jumps = direction_jumps(end, start), curvature_jumps(end, start)
@@ -67,14 +74,22 @@ def corner(a: Span, b: Span, contour: Contour, path_axes: Sequence[int]) -> Corn
     if angle > SHARPEST_DEG or (0.0 < contour.max_angle < angle and both_lines(a, b)):
         return None
     others = [axis for axis in range(len(end)) if axis not in path_axes]
-    if contour.track_dev <= 0.0 and any(kinks[axis] > 0.0 or jumps[axis] > 0.0 for axis in others):
+    if (contour.track_dev <= 0.0 or contour.mode == POS) and any(
+        kinks[axis] > 0.0 or jumps[axis] > 0.0 for axis in others
+    ):
         return None
     before, after = distances(a, b, contour, path_axes, end, start)
-    if min(before, after) < LEAST_DISTANCE:
+    if min(before, after) < LEAST_DISTANCE and contour.mode != POS:
         return None
     left, met = a.end - before, b.begin + after
     first = Span(a.element, a.begin, left if left - a.begin > NEGLIGIBLE_MM else a.begin, a.block)
     last = Span(b.element, met if b.end - met > NEGLIGIBLE_MM else b.end, b.end, b.block)
+    if contour.mode == POS:
+        middle = [contour.point[axis] if axis in path_axes else start[axis][0] for axis in range(len(start))]
+        halves = through(first.shape(first.length), last.shape(0.0), middle, path_axes)
+        if halves is None:
+            return None
+        return first, [whole(piece, a.block if index < 3 else b.block) for index, piece in enumerate(halves)], last
     length = a.end - first.end + (last.begin - b.begin)
     pieces = curve(first.shape(first.length), last.shape(0.0), length)
     return first, [whole(piece, b.block if index else a.block) for index, piece in enumerate(pieces)], last
@@ -167,6 +182,8 @@ def distances(
 ) -> tuple[float, float]:
     """dA and dB. If one of two equal ones has to be shorter, both are."""
     before, after = room(a, contour), room(b, contour)
+    if contour.mode == POS:
+        return min(before, contour.pre_dist), min(after, contour.post_dist)
     parts = EVEN
     if contour.mode == DIST and contour.pre_dist != contour.post_dist:
         before, after = min(before, contour.pre_dist), min(after, contour.post_dist)
@@ -255,3 +272,20 @@ def curve(before: Sequence[Shape], after: Sequence[Shape], length: float) -> lis
         pieces[1].append((y1, s1, m1, (m2 - m1) / h))
         pieces[2].append((y1 + h * s1 + sixth * (2.0 * m1 + m2), s1 + half * (m1 + m2), m2, (m3 - m2) / h))
     return [Cubic(shape, h) for shape in pieces]
+
+
+def through(
+    before: Sequence[Shape], after: Sequence[Shape], point: Sequence[float], path_axes: Sequence[int]
+) -> list[Cubic] | None:
+    """Two curves that meet at a point, three pieces each; None if it is the end of one of them."""
+    l1 = sqrt(sum([(point[axis] - before[axis][0]) ** 2 for axis in path_axes]))
+    l2 = sqrt(sum([(after[axis][0] - point[axis]) ** 2 for axis in path_axes]))
+    if min(l1, l2) < LEAST_DISTANCE:
+        return None
+    middle: list[Shape] = []
+    for (y0, s0, m0, _), (y3, s3, m3, _), y in zip(before, after, point, strict=True):
+        d1 = (y - y0 - s0 * l1 - 0.5 * m0 * l1 * l1) / (l1 * l1)
+        d2 = (y - y3 + s3 * l2 - 0.5 * m3 * l2 * l2) / (l2 * l2)
+        s = (12.0 * (d1 - d2) + 6.0 * (s0 / l1 + s3 / l2) + 5.0 * (m0 - m3)) / (6.0 / l1 + 6.0 / l2)
+        middle.append((y, s, 6.0 * (s - s0) / l1 - 12.0 * d1 - 5.0 * m0, 0.0))
+    return curve(before, middle, l1) + curve(middle, after, l2)

@@ -1,2 +1,2 @@
-; P-ERR-21615 contour_unknown_mode.nc line 2 column 16 '#CONTOUR MODE [NEAR PATH_DEV=1]': 'NEAR' is not available in #CONTOUR MODE; its syntax is #CONTOUR MODE [DEV PATH_DEV=0.01 TRACK_DEV=5] or [DIST PRE_DIST=1 POST_DIST=2], ON, OFF
+; P-ERR-21615 contour_unknown_mode.nc line 2 column 16 '#CONTOUR MODE [NEAR PATH_DEV=1]': 'NEAR' is not available in #CONTOUR MODE; its syntax is #CONTOUR MODE [DEV PATH_DEV=0.01 TRACK_DEV=5], [DIST PRE_DIST=1 POST_DIST=2] or [POS PRE_DIST=1 POST_DIST=2 X10 Y5], ON, OFF
 #CONTOUR MODE [NEAR PATH_DEV=1]

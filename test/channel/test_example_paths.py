@@ -1,0 +1,66 @@
+"""Every example program and every cycle that ships, before the checker that knows nothing of the planner.
+
+Left out: homing.nc, in which the set positions jump where the axes get their reference, and programs in which the path
+does not move. drill.nc is called by pocket.nc.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from program_segments import findings
+
+from cnc_ptp.nc.faults import ProgramError
+
+ROOT = Path(__file__).parents[2]
+MILL = "config/mill.yaml"
+LATHE = "config/lathe.yaml"
+PAIRS = [
+    *((MILL, f"examples/{name}") for name in ("bracket.nc", "cover.nc", "pocket.nc", "tapping.nc", "plate.ngc")),
+    *((LATHE, f"examples/threads/{name}.nc") for name in ("chain", "longitudinal", "taper", "two_starts")),
+    *((LATHE, f"examples/{name}.nc") for name in ("thread", "turning", "lathe", "caxis", "turned_part")),
+    *((LATHE, f"examples/manual/{path.name}") for path in sorted((ROOT / "examples" / "manual").glob("*.nc"))),
+    ("examples/probe.yaml", "examples/probe.nc"),
+    *((MILL, f"examples/figures/path_{name}.nc") for name in ("corners", "velocity")),
+    *((MILL, f"examples/figures/control_circle{name}.nc") for name in ("", "_feedforward")),
+    *(("examples/spindles/nc_spindle.yaml", f"examples/spindles/{name}.nc") for name in ("din", "brackets")),
+    *(
+        ("examples/spindles/synchronisation.yaml", f"examples/spindles/{name}.nc")
+        for name in ("synchronised", "not_synchronised")
+    ),
+    ("examples/spindles/sensorless.yaml", "examples/spindles/open_loop.nc"),
+    ("examples/spindles/synchronous.yaml", "examples/spindles/synchronous.nc"),
+    ("examples/spindles/three_spindles.yaml", "examples/spindles/three_spindles.nc"),
+    ("examples/spindles/tools.yaml", "examples/spindles/tools.nc"),
+    ("examples/spindles/two_channels.yaml", "examples/spindles/channel1.nc"),
+]
+CYCLES = {
+    81: "G81[-5, 2]", 82: "G82[-5, 2, 0.1]", 83: "G83[-9, 2, 4]", 84: "S200 G84[-8, 2, 1.25, 0.1]", 85: "G85[-5, 2]", 86: "M03 S500\nG86[-5, 2]\nM05", 89: "G89[-5, 2, 0.1]",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("machine", "program"), PAIRS, ids=lambda name: Path(name).stem)
+def test_an_example_keeps_to_its_path_and_the_axes_to_their_limits(machine: str, program: str) -> None:
+    assert findings(machine, program) == []
+
+
+@pytest.mark.parametrize("code", CYCLES)
+def test_a_cycle_keeps_to_its_path_and_the_axes_to_their_limits(code: int, tmp_path: Path) -> None:
+    program = tmp_path / "cycle.nc"
+    program.write_text(f"G00 Z10 F300\n{CYCLES[code]}\nX20 Y-10\nG18 {CYCLES[code]}\nG17 Z10\nM30\n")
+    assert findings(MILL, str(program)) == []
+
+
+@pytest.mark.parametrize("words", ["PRE_DIST=2 POST_DIST=3 X9 Y1", "PRE_DIST=0 POST_DIST=0 X12 Y-2", "X10.5 Z1"])
+def test_a_corner_with_an_interim_point(words: str, tmp_path: Path) -> None:
+    program = tmp_path / "point.nc"
+    program.write_text(f"G00 X0 Y0\n#CONTOUR MODE [POS {words}]\nG61 G01 X10 F3000\nY10\nG261 X0 Y20\nX-10\nM30\n")
+    assert findings(MILL, str(program)) == []
+
+
+def test_an_interim_point_beyond_a_soft_limit_is_refused(tmp_path: Path) -> None:
+    program = tmp_path / "point.nc"
+    program.write_text("G00 X0 Y0\n#CONTOUR MODE [POS X10 Y-201]\nG61 G01 X10 F3000\nY10\nM30\n")
+    with pytest.raises(ProgramError, match="axis Y: -201 mm lies beyond the negative soft limit -200 mm"):
+        findings(MILL, str(program))

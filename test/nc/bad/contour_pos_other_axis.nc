@@ -1,0 +1,3 @@
+; P-ERR-21615 contour_pos_other_axis.nc line 2 column 26 '#CONTOUR MODE [POS X5 Y5 A5]': 'A5' is not available in #CONTOUR MODE; its syntax is #CONTOUR MODE [DEV PATH_DEV=0.01 TRACK_DEV=5], [DIST PRE_DIST=1 POST_DIST=2] or [POS PRE_DIST=1 POST_DIST=2 X10 Y5], ON, OFF
+#CONTOUR MODE [POS X5 Y5 A5]
+M30
