@@ -9,7 +9,7 @@ from cnc_ptp.kinematics.kinematics import Kinematics
 from cnc_ptp.nc.canonical import OffsetReport
 from cnc_ptp.nc.coordinates.codes import LAST_OFFSET, offset_values
 from cnc_ptp.nc.coordinates.coordinates import NO_CHANGES, Coordinates
-from cnc_ptp.nc.coordinates.frame import IDENTITY, Frame, matrix
+from cnc_ptp.nc.coordinates.frame import IDENTITY, Frame, main_axes, matrix
 from cnc_ptp.nc.coordinates.report import offset_report
 from cnc_ptp.nc.program import Channel, ModalState
 from cnc_ptp.parameters.list_units import LARGEST_POSITION
@@ -120,7 +120,9 @@ class OffsetMemory:
         self._shown, self._kinematics = report, report.kinematics
         linear, none = matrix([report.matrix[row : row + 3] for row in (0, 3, 6)]), not any(report.shift)
         same = none and linear == IDENTITY
-        self._frame = None if same else Frame(linear, report.shift, self._channel.main)
+        plane = None if report.kinematics is None else report.kinematics.plane
+        main = main_axes(self._channel.main, plane)
+        self._frame = None if same else Frame(linear, report.shift, main)
         self._news.append(self._message(cycle, line, report))
 
     def news(self) -> list[ChannelOffsets]:

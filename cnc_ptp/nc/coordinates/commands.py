@@ -10,6 +10,7 @@ from cnc_ptp.nc.c_axis_faults import NOT_WITH_KINEMATICS
 from cnc_ptp.nc.canonical import number
 from cnc_ptp.nc.coordinates import coordinate_faults as faults
 from cnc_ptp.nc.coordinates.coordinates import NO_OFFSETS, System, system_of
+from cnc_ptp.nc.coordinates.frame import main_axes
 from cnc_ptp.nc.coordinates.placement import plane_axes, refresh
 from cnc_ptp.nc.expressions.nodes import Node
 from cnc_ptp.nc.expressions.values import Values
@@ -85,10 +86,11 @@ class Scale(CoordinateCommand):
         coordinates = state.coordinates
         if self.factors and coordinates.scaled:
             raise faults.SCALE_ACTIVE.at(line.source, self.column)
+        plane = () if coordinates.kinematics is None else coordinates.kinematics.plane
         scale = list(coordinates.scale or (1.0,) * len(channel.axes))
         for axis, node, column in self.factors:
             index = axis_index(channel, line, axis, column)
-            if axis in channel.rotary:
+            if axis in channel.rotary and index not in plane:
                 raise faults.SCALE_ROTARY.at(line.source, column, axis=axis)
             value = bounded(node, execution.values)
             if value <= 0.0:
@@ -152,7 +154,8 @@ class SystemCommand(CoordinateCommand):
         if depth > DEEPEST:
             raise faults.SYSTEM_DEPTH.at(line.source, self.column, command=self.command, depth=depth, limit=DEEPEST)
         system = system_of(self.command, values, coordinates.own)
-        for place, index in enumerate(channel.main):
+        plane = None if coordinates.kinematics is None else coordinates.kinematics.plane
+        for place, index in enumerate(main_axes(channel.main, plane)):
             mixed = [system.rotation[place][other] for other in range(3) if other != place]
             if index < 0 and (any(mixed) or system.shift[place]):
                 raise faults.MAIN_AXIS_MISSING.at(line.source, self.column, word=self.command, axis="XYZ"[place])

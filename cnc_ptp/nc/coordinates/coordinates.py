@@ -15,6 +15,7 @@ from cnc_ptp.nc.coordinates.frame import (
     Frame,
     Matrix,
     diagonal,
+    main_axes,
     product,
     rotation_about,
     times,
@@ -134,6 +135,7 @@ class Coordinates:
 
     def frame(self, count: int, main: tuple[int, int, int]) -> Frame | None:
         """The map for `count` axes with the main axes at these places."""
+        main = main_axes(main, None if self.kinematics is None else self.kinematics.plane)
         linear, shift = self._contour(count, main)
         shift = self._added(shift, self.own)
         if not self.tool_fixed:

@@ -65,6 +65,18 @@ def inverse(a: Matrix) -> Matrix:
     return matrix([[value / determinant for value in row] for row in cofactors])
 
 
+def main_axes(main: tuple[int, int, int], plane: tuple[int, int] | None) -> tuple[int, int, int]:
+    """Places of X, Y, Z among the axes. In a `plane` of #FACE or #CYL (linear axis, C), C counts as Y.
+
+    As X beside a linear axis that is Y.
+    """
+    if plane is None:
+        return main
+    x, y, z = main
+    linear, c = plane
+    return (c, y, z) if linear == y else (x, c, z)
+
+
 class Frame:
     """machine = linear · programmed + shift. `main`: places of X, Y, Z among the axes, -1 for one that is not there."""
 

@@ -47,7 +47,12 @@ def leave_frame(state: ModalState) -> None:
 
 
 def plane_axes(channel: Channel, state: ModalState, source: Source, word: str) -> tuple[int, int]:
-    """Places of the two axes of the active plane. Raises ProgramError 21603 if one is missing."""
+    """Places of the two axes of the active plane, or of that of #FACE or #CYL.
+
+    Raises ProgramError 21603 if one is missing.
+    """
+    if state.coordinates.kinematics is not None:
+        return state.coordinates.kinematics.plane
     names = PLANE_AXES[state.plane]
     first, second = (channel.axis_index.get(name) for name in names)
     if first is None or second is None:
