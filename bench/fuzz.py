@@ -1,6 +1,7 @@
 """`python -m bench.fuzz [BYTES] [SEED] [DIALECT]`: mutated programs; only ProgramError may come, no hang, no growth.
 
-Each is interpreted with tables of tools and offsets and a clamp position, or without them.
+Each is interpreted with tables of tools and offsets and a clamp position, or without them; some are checked on a
+machine of config or examples, too.
 """
 
 from __future__ import annotations
@@ -10,9 +11,12 @@ import resource
 import sys
 import time
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
+from cnc_ptp.channel.program_check import ProgramCheck
 from cnc_ptp.nc.canonical_text import format_block
 from cnc_ptp.nc.coordinates.codes import initial_state
 from cnc_ptp.nc.faults import ProgramError
@@ -22,7 +26,7 @@ from cnc_ptp.nc.parser import parse_all
 from cnc_ptp.nc.program import Channel
 from cnc_ptp.nc.spindles import spindle_table
 from cnc_ptp.nc.vocabularies import VOCABULARIES
-from cnc_ptp.parameters import NO_OFFSET_TABLES, NO_TOOLS, OffsetTables, Tool, ToolTable
+from cnc_ptp.parameters import NO_OFFSET_TABLES, NO_TOOLS, OffsetTables, Tool, ToolTable, read_machine
 
 ROOT = Path(__file__).parents[1]
 AXES = ("X", "Y", "Z")
@@ -112,6 +116,19 @@ WORDS = (
 """Pieces that make mutations meaningful."""
 
 
+MACHINES = (
+    "config/mill.yaml",
+    "config/lathe.yaml",
+    "examples/lathe.yaml",
+    "examples/lathe_c.yaml",
+    "examples/probe.yaml",
+    "examples/spindles/three_spindles.yaml",
+    "examples/spindles/gears_programmed.yaml",
+)
+ON_MACHINES = 0.1
+"""Part of the programs that are checked on one of them."""
+
+
 def corpus(dialect: str = "") -> list[str]:
     """Programs to start from: all of the tests and the examples, or those of one vocabulary."""
     files = [*(ROOT / "test" / "nc").rglob("*.nc"), *(ROOT / "examples").rglob("*.n*c")]
@@ -146,6 +163,14 @@ def mutated(texts: Sequence[str], draw: random.Random) -> str:
     return text[:20_000]
 
 
+@cache
+def machine_check(machine: str) -> ProgramCheck:
+    """Of the first channel of a machine file."""
+    parameters = read_machine(ROOT / machine)
+    channels = {name: replace(channel, repeats=LIMITS.repeats) for name, channel in parameters.channels.items()}
+    return ProgramCheck.of_first_channel(replace(parameters, channels=channels), "fuzz.nc")
+
+
 def survives(text: str, dialect: str, draw: random.Random) -> None:
     """Raises whatever is no ProgramError."""
     vocabulary = VOCABULARIES[dialect or dialect_of(text)]
@@ -162,6 +187,8 @@ def survives(text: str, dialect: str, draw: random.Random) -> None:
             format_block(block)
     except ProgramError as error:
         errors.append(error)
+    if draw.random() < ON_MACHINES:
+        errors += machine_check(draw.choice(MACHINES)).errors(text, "fuzz.nc", files, vocabulary)
     for error in errors:
         assert error.line >= 1 and error.column >= 1 and error.caret and str(error)
 

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.run_entries import program_search
-from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.notes import Note
+
+if TYPE_CHECKING:
+    from cnc_ptp.parameters import MachineParameters
 
 RUN_FAILED = 1
 """The run ended in an error, or a recording differs."""
@@ -70,6 +72,8 @@ def print_faults(
 
 def print_missing_folders(machine: MachineParameters) -> None:
     """Warns of search folders for programs (P-CHAN-90004) that are not there, on standard error."""
+    from cnc_ptp.machine.run_entries import program_search  # `cnc_ptp --help` does not wait for it
+
     folders = {folder: None for channel in machine.channels for folder in program_search(machine, channel).missing}
     for folder in folders:
         print(f"warning: search folder {folder} (P-CHAN-90004) does not exist", file=sys.stderr)

@@ -44,6 +44,7 @@ def functions(channel: Channel, state: ModalState, block: NcBlock, code: GCode) 
     if rival:
         raise _fault(spindle_faults.TAPPING_AND_M, block, rival, word=rival, g=code.name)
     gear: tuple[Function, ...] = ()
+    require_spindle(channel, block, code.name)
     main = _tapping_spindle(channel, state)
     if main.path_gear and state.spindle.gears.get(main.key, main.gear) != main.path_gear:
         state.spindle.gears[main.key] = main.path_gear
