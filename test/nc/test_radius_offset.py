@@ -93,7 +93,7 @@ def test_a_mirrored_face_has_the_path_of_the_mirrored_contour() -> None:
     """Left of the drawing is right of the contour then; the mirrored program with the other code says so, too."""
     head = "G18 D1\n#CAX\nG00 X30 C0\n#FACE [X, C]\n"
     programs = (
-        head + "G22 X-30\nG41 G01 X-20 C-10 F600\nC10\nX0 C20\nG40 X30",
+        head + "G21 X-30\nG41 G01 X-20 C-10 F600\nC10\nX0 C20\nG40 X30",
         head + "G42 G01 X20 C-10 F600\nC10\nX0 C20\nG40 X-30",
     )
     options = {"spindles": TABLES["c_axis"], "tools": ToolTable({1: Tool(radius=3.0)}, True)}
