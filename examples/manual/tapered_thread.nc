@@ -10,7 +10,7 @@ N040 M29 (subroutine end)
 N050 G00 X0 Z0
 N060 G18
 N070 G51 (select diameter programming)
-N080 D1 M03 S100 (select tool, start spindle)
+N080 T5 D5 M03 S100 (select tool, start spindle; D1 in the manual)
 N090 G00 X105 Z105 (start)
 N100 G01 X100 F1000 (position at 1st cutting depth)
 N110 LL tapered_thread (1st thread cut)

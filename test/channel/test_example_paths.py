@@ -13,14 +13,14 @@ from program_segments import findings
 
 from cnc_ptp.nc.faults import ProgramError
 
-ROOT = Path(__file__).parents[2]
 MILL = "config/mill.yaml"
 LATHE = "config/lathe.yaml"
 PAIRS = [
     *((MILL, f"examples/{name}") for name in ("bracket.nc", "cover.nc", "pocket.nc", "tapping.nc", "plate.ngc")),
     *((LATHE, f"examples/threads/{name}.nc") for name in ("chain", "longitudinal", "taper", "two_starts")),
     *((LATHE, f"examples/{name}.nc") for name in ("thread", "turning", "lathe", "caxis", "turned_part")),
-    *((LATHE, f"examples/manual/{path.name}") for path in sorted((ROOT / "examples" / "manual").glob("*.nc"))),
+    *((LATHE, f"examples/manual/{name}.nc") for name in ("longitudinal_thread", "two_starts", "tapered_thread")),
+    *((MILL, f"examples/manual/{name}.nc") for name in ("tapping", "tapping_twice")),
     ("examples/probe.yaml", "examples/probe.nc"),
     *((MILL, f"examples/figures/path_{name}.nc") for name in ("corners", "velocity")),
     *((MILL, f"examples/figures/control_circle{name}.nc") for name in ("", "_feedforward")),

@@ -126,7 +126,7 @@ def test_program_that_cannot_be_read(tmp_path):
 
 def test_unknown_kind(tmp_path):
     of_spindles = "spindle_curve, spindle_states, spindle_and_path, gear_ranges"
-    known = f"time, friction_curve, weights, circle, {of_spindles}, over_path, corners, turned_part"
+    known = f"time, friction_curve, weights, circle, {of_spindles}, over_path, corners, thread, surfaces, turned_part"
     expected = f"kind 'bars' does not exist, known are {known}"
     assert refusal(written(tmp_path, kind="bars")) == expected
 

@@ -55,8 +55,11 @@ M30
 """
 
 
-def record(path: Path, machine: Path, program: str, scenario: str = "") -> Recorded:
-    text = machine_text(machine)
+def record(path: Path, machine: Path, program: str, scenario: str = "", acceleration: int = 18000) -> Recorded:
+    """`acceleration`: of the main spindle, deg/s²."""
+    text = machine_text(machine).replace(
+        "a_beschl: 18000, a_brems: 18000", f"a_beschl: {acceleration}, a_brems: {acceleration}"
+    )
     bench = MachineBench(program, scenario, machine=load_machine(text, "machine.yaml")).run()
     assert not bench.failed
     with Recording(path, text) as recording:
@@ -106,7 +109,9 @@ def test_the_table_has_a_line_for_each_pass(threads):
 
 def test_a_dip_of_the_speed_is_in_the_table(tmp_path):
     scenario = "- {at: 2.5, to: s, do: set_override, percent: 90}"
-    recorded = record(tmp_path / "run.mcap", LATHE, "%T\nG18 G90 M03 S400\nG00 X36 Z105\nG33 Z75 K1.5\nM30\n", scenario)
+    recorded = record(
+        tmp_path / "run.mcap", LATHE, "%T\nG18 G90 M03 S400\nG00 X36 Z105\nG33 Z75 K1.5\nM30\n", scenario, 6000
+    )
     [row] = thread_table(report_page(recorded))
     # 6000 deg/s² within one block of 10 ms before the path knows: 2.2 µm (docs/threads.md)
     assert float(row["pitch error set µm"]) == pytest.approx(2.2, abs=0.15)
