@@ -11,28 +11,7 @@ from plotly.offline import get_plotlyjs
 from cnc_ptp.plots.colours import BLUE, EDGE, INK, RED, SOFT
 
 MOST_ROWS = 1000
-NUMBERS = (
-    "time in s",
-    "cycle",
-    "line",
-    "messages",
-    "from s",
-    "to s",
-    "N",
-    "length in mm",
-    "F in mm/min",
-    "reached in mm/min",
-    "pass",
-    "at s",
-    "from mm",
-    "to mm",
-    "lead mm",
-    "rpm",
-    "pitch error set µm",
-    "pitch error actual µm",
-    "phase deg",
-    "against pass 1 deg",
-)  # columns of numbers
+NUMBER = ' class="number"'
 CONFIG = {
     "displaylogo": False,
     "responsive": True,
@@ -138,20 +117,25 @@ def count_note(number: int, what: str) -> str:
 
 
 def table(head: Sequence[str], rows: Iterable[tuple[str, list[str]]]) -> str:
-    lines = [
-        f'<tr class="{style}">{"".join(cells)}</tr>' if style else f"<tr>{''.join(cells)}</tr>" for style, cells in rows
-    ]
-    if not lines:
+    """Empty without rows; the head of a column with numbers is on their side."""
+    known = list(rows)
+    if not known:
         return ""
+    lines = [
+        f'<tr class="{style}">{"".join(cells)}</tr>' if style else f"<tr>{''.join(cells)}</tr>"
+        for style, cells in known
+    ]
     heads = "".join(
-        f'<th class="number">{escape(title)}</th>' if title in NUMBERS else f"<th>{escape(title)}</th>"
-        for title in head
+        f"<th{NUMBER}>{escape(title)}</th>"
+        if any(cell.startswith(f"<td{NUMBER}>") for cell in column)
+        else f"<th>{escape(title)}</th>"
+        for title, *column in zip(head, *[cells for _, cells in known], strict=True)
     )
     return f'<div class="scroll"><table><thead><tr>{heads}</tr></thead><tbody>{"".join(lines)}</tbody></table></div>'
 
 
 def number_cell(value: float, digits: int = 0) -> str:
-    return f'<td class="number">{value:.{digits}f}</td>'
+    return f"<td{NUMBER}>{value:.{digits}f}</td>"
 
 
 def text_cell(value: str) -> str:
