@@ -43,7 +43,7 @@ from cnc_ptp.path.active_motion import PathPoint
 from cnc_ptp.path.geometry import begins_element
 from cnc_ptp.path.path_motion import PathMotion
 from cnc_ptp.path.shape import AxisState
-from cnc_ptp.path.thread.thread_place import ThreadPlace
+from cnc_ptp.path.thread_place import ThreadPlace
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
 from cnc_ptp.protocol.blocks import ChannelBlock, Command, CycleBlock, CycleTick, Severity
 from cnc_ptp.protocol.channel_states import ChannelStateCode

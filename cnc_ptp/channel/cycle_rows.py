@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from cnc_ptp.path.shape import AxisState, AxisStates
-from cnc_ptp.path.thread.thread_place import ThreadPlace
+from cnc_ptp.path.thread_place import ThreadPlace
 
 
 class CycleRows:

@@ -19,7 +19,7 @@ from math import isnan, nan
 from typing import Final, NamedTuple
 
 from cnc_ptp.path.thread.thread_check import TURN
-from cnc_ptp.path.thread.thread_place import ThreadPlace
+from cnc_ptp.path.thread_place import ThreadPlace
 from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, CycleBlock, SpindleBlock
 
 

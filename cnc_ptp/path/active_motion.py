@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from cnc_ptp.path.interpolator import PathInterpolator
 from cnc_ptp.path.shape import AxisState, AxisStates
-from cnc_ptp.path.thread.thread_place import ThreadPlace
+from cnc_ptp.path.thread_place import ThreadPlace
 from cnc_ptp.protocol.blocks import CycleBlock
 
 PathPoint = tuple[AxisStates, float, float]

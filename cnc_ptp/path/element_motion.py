@@ -10,7 +10,7 @@ from cnc_ptp.path.interpolator import PathInterpolator
 from cnc_ptp.path.motion_plan import Plan
 from cnc_ptp.path.shape import AxisStates, standing, without_jerk
 from cnc_ptp.path.thread.thread_check import TURN
-from cnc_ptp.path.thread.thread_place import ThreadPlace
+from cnc_ptp.path.thread_place import ThreadPlace
 
 Evaluation = Callable[[float, float, float, float], AxisStates]
 """States of the axes from path length, velocity, acceleration and jerk."""

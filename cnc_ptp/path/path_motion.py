@@ -20,7 +20,7 @@ from cnc_ptp.path.motion_plan import LimitsOfSpindle, MotionPlanner, Plan
 from cnc_ptp.path.shape import AT_REST, AxisState, AxisStates, standing
 from cnc_ptp.path.thread.thread_check import angle_of, thread_settings, with_retract
 from cnc_ptp.path.thread.thread_path import ThreadPath
-from cnc_ptp.path.thread.thread_place import ThreadPlace
+from cnc_ptp.path.thread_place import ThreadPlace
 from cnc_ptp.path.transformed_span import require_possible
 from cnc_ptp.protocol.blocks import CycleBlock
 

@@ -147,7 +147,7 @@ def test_runs_without_a_thread_have_empty_columns():
 
 def test_a_spindle_that_does_not_report_leaves_them_out():
     from cnc_ptp.channel.thread_errors import ThreadErrors
-    from cnc_ptp.path.thread.thread_place import ThreadPlace
+    from cnc_ptp.path.thread_place import ThreadPlace
 
     places = ThreadErrors(["z"], 0)
     places.note(10, 10, {3: ThreadPlace("s", 0, 1.0, -1.5, 30.0)})

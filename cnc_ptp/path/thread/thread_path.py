@@ -48,7 +48,7 @@ from cnc_ptp.path.thread.thread_check import (
     words_of,
 )
 from cnc_ptp.path.thread.thread_geometry import ThreadGeometry
-from cnc_ptp.path.thread.thread_place import ThreadPlace
+from cnc_ptp.path.thread_place import ThreadPlace
 from cnc_ptp.protocol.blocks import CycleBlock, Severity
 
 THREAD_BEGINS = 22085
