@@ -232,12 +232,15 @@ class ProgramCheck:
                 return
             motion, before = block.motion, threads.here
             homed = homed or isinstance(motion, HomeAxes)
-            self._require_block(block, missing)
-            if homed:
-                return
-            if isinstance(motion, LinearMove) and motion.thread is not None:
-                self._require_thread(before, motion, motion.thread, block.source)
-            threads.take(block)
+            try:
+                self._require_block(block, missing)
+                if isinstance(motion, LinearMove) and motion.thread is not None and not homed:
+                    self._require_thread(before, motion, motion.thread, block.source)
+            except ProgramError:
+                threads.leave_out(block)
+                raise
+            if not homed:
+                threads.take(block)
 
         return check_block
 

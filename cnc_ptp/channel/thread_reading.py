@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from cnc_ptp.errors import CncError
 from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, LinearMove, Source
 from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.nc.interpreter import awaits_path
 from cnc_ptp.path.thread.retract import Retract
 from cnc_ptp.path.thread.thread_check import ThreadSettings, checked_geometry, with_retract, words_of
 
@@ -30,6 +31,8 @@ class ThreadReading:
         self.here = self._begin = tuple(start)
         self._motions: list[LinearMove] = []
         self._source = Source("", 0, 0, "")
+        self._unsure = False
+        """Only the run knows whether the path stops for a function of the blocks of the thread."""
 
     def take(self, block: CanonicalBlock) -> None:
         """Raises ProgramError 22082 to 22084, 22088, 22089 for the thread that ends before this block."""
@@ -39,11 +42,25 @@ class ThreadReading:
         if isinstance(motion, LinearMove) and motion.thread is not None:
             if self._motions and not self._continued_by(motion):
                 self.finish()
-            if not self._motions:
+            if self._unsure:
+                self._motions = []
+            elif not self._motions:
                 self._begin, self._source = here, block.source
-            self._motions.append(motion)
+                self._motions = [motion]
+            else:
+                self._motions.append(motion)
         elif motion is not None:
             self.finish()
+        if block.stop not in ("", "M01") or awaits_path(block):
+            self.finish()
+        elif self._motions and (block.functions or block.stop):
+            self._unsure = True
+
+    def leave_out(self, block: CanonicalBlock) -> None:
+        """A block that has an error of its own already; so has its thread."""
+        if isinstance(block.motion, (LinearMove, CircularMove)):
+            self.here = block.motion.target
+        self._motions, self._unsure = [], False
 
     def _continued_by(self, motion: LinearMove) -> bool:
         last, thread = words_of(self._motions[-1]), words_of(motion)
@@ -51,7 +68,7 @@ class ThreadReading:
 
     def finish(self) -> None:
         """The thread ends here. Raises as `take`."""
-        motions, self._motions = self._motions, []
+        motions, self._motions, self._unsure = self._motions, [], False
         speed = abs(words_of(motions[0]).speed) if motions else 0.0
         try:
             if motions:

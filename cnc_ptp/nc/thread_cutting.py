@@ -28,6 +28,7 @@ from cnc_ptp.nc.canonical import (
 from cnc_ptp.nc.motions import target_of
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
 from cnc_ptp.nc.spindles import ROTATION, current_main, name_of, names, require_spindle
+from cnc_ptp.nc.thread_retract import machine_retract
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 
 PITCH_WORDS: Final = frozenset("IJK")
@@ -56,7 +57,8 @@ def thread(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> 
     modes, change = state.thread, _change(state, block, code, ways[axis])
     turns = 2.0 * ways[axis] / (modes.pitch + sqrt(modes.pitch**2 + 2.0 * change * ways[axis]))
     spindle, place = current_main(channel, state).key, channel.axis_index[axis]
-    led = Thread(spindle, TURN * turns, modes.pitch, place, modes.offset, change=change, retract=modes.retract)
+    retract = machine_retract(state, block, code)
+    led = Thread(spindle, TURN * turns, modes.pitch, place, modes.offset, change=change, retract=retract)
     return LinearMove(tuple(target), False, 0.0, thread=led)
 
 

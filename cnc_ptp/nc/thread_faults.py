@@ -22,5 +22,6 @@ SPINDLE_COMMANDED = Fault(
     21666, "{word} commands spindle {spindle} between two blocks of a thread; it must not change within a thread"
 )
 RETRACT_AXIS = Fault(21672, "{word} is not possible: a retract moves one axis of X, Y and Z, as in {syntax}")
+RETRACT_ASKEW = Fault(21673, "the retract of #THREAD RETRACT would be askew: X, Y and Z are rotated")
 OFFSET_SPINDLE = Fault(21668, "OFFSET of spindle {spindle}; a thread is cut with the main spindle {main}")
 OFFSET_RANGE = Fault(21669, "OFFSET {value} deg of spindle {spindle} must be from 0 to below 360")

@@ -6,27 +6,44 @@ from typing import Final
 
 from cnc_ptp.nc import thread_faults
 from cnc_ptp.nc.coordinates.commands import axis_index, bounded
+from cnc_ptp.nc.coordinates.frame import LEAST
 from cnc_ptp.nc.expressions.nodes import Node
 from cnc_ptp.nc.flow.command_words import Words
 from cnc_ptp.nc.flow.lines import Flow, Line, Statement
-from cnc_ptp.nc.program import NcBlock
+from cnc_ptp.nc.program import GCode, ModalState, NcBlock
 
 COMMAND: Final = "#THREAD RETRACT"
-SYNTAX: Final = "#THREAD RETRACT X-5, in the direction of the axis, or #THREAD RETRACT OFF"
+SYNTAX: Final = "#THREAD RETRACT X-5, in the direction of the axis, or #THREAD RETRACT OFF or DEFAULT"
 AXES: Final = ("X", "Y", "Z")
 
 
-class ThreadRetract(Statement):
-    """One axis with its way, or none: the path stops in the thread."""
+def machine_retract(state: ModalState, block: NcBlock, code: GCode) -> tuple[int, float] | None:
+    """Place of the axis and way (mm) of the retract of the program, as mirror, scale and rotation make them.
 
-    def __init__(self, column: int, axis: str, way: Node | None, place: int) -> None:
+    None: that of the machine file. Raises ProgramError 21673.
+    """
+    retract, frame = state.thread.retract, state.frame
+    if retract is None or retract[1] == 0.0 or frame is None or not frame.turned:
+        return retract
+    column = frame.main.index(retract[0])
+    ways = [row[column] * retract[1] for row in frame.linear]
+    largest = max(range(3), key=lambda place: abs(ways[place]))
+    if sum(map(abs, ways)) - abs(ways[largest]) > LEAST * abs(ways[largest]):
+        raise thread_faults.RETRACT_ASKEW.at(block.source, block.source.column(code.name))
+    return frame.main[largest], ways[largest]
+
+
+class ThreadRetract(Statement):
+    """One axis with its way, or none: the path stops in the thread. `default`: as the machine file has it."""
+
+    def __init__(self, column: int, axis: str, way: Node | None, place: int, *, default: bool = False) -> None:
         super().__init__(column, independent=True)
-        self.axis, self.way, self.place = axis, way, place
+        self.axis, self.way, self.place, self.default = axis, way, place, default
 
     def run(self, execution: Flow, line: Line) -> NcBlock | None:
         values = execution.values
         state, channel = values.state, values.channel
-        retract = (0, 0.0)
+        retract = None if self.default else (0, 0.0)
         if self.way is not None:
             index = axis_index(channel, line, self.axis, self.place)
             retract = (index, bounded(self.way, values) * state.coordinates.unit)
@@ -37,10 +54,11 @@ class ThreadRetract(Statement):
 def read_thread_retract(line: Line, text: str, end: int, column: int) -> None:
     """#THREAD RETRACT."""
     words = Words(line, text, end, COMMAND, SYNTAX)
-    if words.takes("OFF"):
-        words.require_end()
-        line.statement = ThreadRetract(column, "", None, column)
-        return
+    for switch in ("OFF", "DEFAULT"):
+        if words.takes(switch):
+            words.require_end()
+            line.statement = ThreadRetract(column, "", None, column, default=switch == "DEFAULT")
+            return
     axes = words.axes()
     if not axes:
         raise words.missing("an axis with its way")

@@ -95,6 +95,17 @@ def test_passes_of_a_thread_get_deeper_by_the_square_root_of_their_number() -> N
     assert found == ["rapid (21, 62)", *[line for each in passes for line in each]]
 
 
+def test_the_retract_of_an_inside_thread_ends_with_its_cycle() -> None:
+    """Else it would lead into the workpiece outside; X of a mirrored program is mirrored for it, too."""
+    inside = "L CYCLE [NAME=threading.nc @X=20 @Z=32 @LEAD=3 @DEPTH=-0.8 @FIRST=0.8]"
+    outside = "L CYCLE [NAME=threading.nc @X=20 @Z=32 @LEAD=3 @DEPTH=0.8 @FIRST=0.8]"
+    files = called_programs(f"{inside}\n{outside}", [str(HERE / "library")])
+    for mirror, way in (("", "-1.8"), ("G18 G22 X-30\n", "1.8")):
+        text = f"M03 S100\n{mirror}{inside}\n{outside}\nG33 Z20 K3\nM30"
+        threads = [line for line in lines(text, files=files, **LATHE) if line.startswith("thread")]
+        assert [line.partition(" retract ")[2] for line in threads] == [f"{way} by axis 0", "", ""]
+
+
 def test_flank_infeed_taper_starts_and_chamfer_of_a_thread() -> None:
     """Inside, from Z62 to Z32: cuts at 0.5 and 1; at 45 deg the first starts 0.5 mm farther away."""
     arguments = "@X=20 @Z=32 @LEAD=3 @DEPTH=-0.8 @FIRST=0.5657 @ANGLE=45 @TAPER=-3 @CHAMFER=3 @STARTS=2 @CLEAR=2"

@@ -62,7 +62,8 @@ V.L.FREE = @X + V.L.INTO * [V.L.CLEAR + MAX[0, V.L.INTO * V.L.TAPER]]
 V.L.CUTS = CEIL[[V.L.FULL / @FIRST] ** 2 - 0.000001]
 V.L.OUT = @Z - V.L.SIDE * V.L.CHAMFER
 $IF V.L.INTO < 0
-; Inside, the tool leaves the groove towards the turning centre if the thread is broken off
+; Inside, the tool leaves the groove towards the turning centre if the thread is broken off; behind the cycle the retract
+; of the machine file counts again
 #THREAD RETRACT X[V.L.INTO * [V.L.FULL + V.L.CLEAR]]
 $ENDIF
 G90 G00 X[V.L.FREE]
@@ -80,4 +81,7 @@ G00 X[V.L.FREE]
 $ENDFOR
 $ENDFOR
 Z[V.L.BEGIN] S.OFFSET=0
+$IF V.L.INTO < 0
+#THREAD RETRACT DEFAULT
+$ENDIF
 M29
