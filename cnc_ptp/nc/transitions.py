@@ -157,6 +157,8 @@ def read_contour_mode(line: Line, text: str, end: int, column: int) -> None:
         mode, options = words.bracket(
             (DEV, DIST, POS) if switch else (DEV, DIST, POS, "OFF"), (*LENGTHS, *OTHERS), MAIN_AXES
         )
+        if not mode and not options:
+            raise words.missing("values in brackets, ON or OFF")
         mode = mode or DEV
     elif not switch:
         raise words.missing("values in brackets, ON or OFF")

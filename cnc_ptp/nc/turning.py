@@ -64,7 +64,7 @@ def take_diameter(channel: Channel, state: ModalState, block: NcBlock, target: l
     axis = state.turning.diameter
     assert axis is not None
     name = channel.axes[axis.place]
-    if name not in block.words:
+    if name not in block.words or is_cartesian(state, axis.place):
         return
     mirror = state.coordinates.mirror
     if mirror and mirror[axis.place] < 0.0:
@@ -81,7 +81,15 @@ def take_diameter(channel: Channel, state: ModalState, block: NcBlock, target: l
 def as_programmed(state: ModalState, index: int, position: float) -> float:
     """A position of an axis as absolute words name it: diameters with G51."""
     axis = state.turning.diameter
-    return 2.0 * position if axis is not None and axis.place == index and axis.absolute else position
+    if axis is None or axis.place != index or not axis.absolute or is_cartesian(state, index):
+        return position
+    return 2.0 * position
+
+
+def is_cartesian(state: ModalState, place: int) -> bool:
+    """Words of the axis are Cartesian (#FACE), and no diameters with G51."""
+    kinematics = state.coordinates.kinematics
+    return kinematics is not None and place in kinematics.plane
 
 
 def _facing_axis(channel: Channel, state: ModalState, block: NcBlock, code: GCode, missing: faults.Fault) -> FacingAxis:

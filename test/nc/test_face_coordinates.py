@@ -5,7 +5,7 @@ from __future__ import annotations
 from cmath import exp, pi
 
 import pytest
-from nc_support import TABLES, run
+from nc_support import FACING, TABLES, run
 
 from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove
 
@@ -67,3 +67,12 @@ def test_behind_the_face_the_plane_is_that_of_the_axes_again() -> None:
     text = f"G18\n#CAX\nG00 X30 Z30\n{FACE}\n#ROTATION ON [ANGLE=30]\n#FACE OFF\nG21 Z5\nX6\n"
     blocks = run(text, axes=LATHE, spindles=TABLES["c_axis"])
     assert [block.motion.target[2] for block in blocks if block.motion is not None][-1] == -5.0
+
+
+def test_diameters_do_not_count_on_the_face() -> None:
+    """Words of X are Cartesian there; on the cylinder X is an axis, so they do."""
+    options = {"axes": LATHE, "spindles": TABLES["c_axis"], "turning_axes": FACING["X"]}
+    for command, x in ((FACE, 20.0), (CYLINDER, 10.0)):
+        text = f"G18 G51\n#CAX\nG00 X60 Z30\n{command}\nG01 X20 F300\nM30"
+        targets = [block.motion.target[0] for block in run(text, **options) if block.motion is not None]
+        assert targets == [30.0, x]

@@ -9,6 +9,8 @@ from cnc_ptp.nc.program import Channel, ModalState
 def offset_report(channel: Channel, state: ModalState) -> OffsetReport:
     """Of the state of the coordinates."""
     count, coordinates, diameter = len(channel.axes), state.coordinates, state.turning.diameter
+    if diameter is not None and coordinates.kinematics is not None and diameter.place in coordinates.kinematics.plane:
+        diameter = None
     frame = coordinates.frame(count, channel.main)
     own = coordinates.own
     zeros = (0.0,) * count
