@@ -26,6 +26,7 @@ class Contour(NamedTuple):
     remain_part  REMAIN_PART: % of a block that its two corners leave as they are
     max_angle    MAX_ANGLE: largest change of direction between two lines at which there is a curve, deg; 0 always
     point        X, Y, Z: the interim point in machine coordinates, one value for each axis of the channel; in POS
+    room         lowest and highest position of each axis, mm or deg; in POS, whose curve may lead beyond its points
     """
 
     mode: str = DEV
@@ -36,6 +37,7 @@ class Contour(NamedTuple):
     remain_part: float = 0.0
     max_angle: float = 0.0
     point: tuple[float, ...] = ()
+    room: tuple[tuple[float, float], ...] = ()
 
 
 DEFAULT_CONTOUR: Final = Contour()

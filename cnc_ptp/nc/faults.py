@@ -175,6 +175,7 @@ NO_TOLERANCE = Fault(
     21114,
     "#HSC ON without PATH_DEV, and the machine file has none (P-CHAN-90014); e.g. #HSC ON [BSPLINE PATH_DEV=0.01]",
 )
+POINT_NOT_POSSIBLE = Fault(21115, "mode POS of #CONTOUR MODE with {what}: its interim point is one of the axes")
 OPTION_OF_OTHER_MODE = Fault(21113, "{word} has no meaning in mode {mode} of #CONTOUR MODE")
 
 # Spindles

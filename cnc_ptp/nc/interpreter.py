@@ -56,6 +56,7 @@ from cnc_ptp.nc.spindles import spindle_table
 from cnc_ptp.nc.thread_cutting import end_thread, note_functions, note_motion, take_offset, with_speed
 from cnc_ptp.nc.tools.compensation import compensating_move, tool_words
 from cnc_ptp.nc.tools.tool_state import NOT_WRITTEN
+from cnc_ptp.nc.transitions import through_point
 from cnc_ptp.nc.vocabulary import FULL_OVERRIDE, TWINCAT
 from cnc_ptp.parameters import NO_OFFSET_TABLES, NO_TOOLS, OffsetTables, ToolTable
 
@@ -335,7 +336,7 @@ def _moved(
         motion = motion._replace(slope=state.slope)
     transition = state.once or state.transition
     if transition is not THROUGH and not ends_on_its_own(motion):
-        motion = motion._replace(transition=transition)
+        motion = motion._replace(transition=through_point(channel, state, block, transition, programmed))
     if block.codes and any(code.number == FULL_OVERRIDE for code in block.codes):
         motion = motion._replace(full_override=True)
     if state.spindle.speedless:

@@ -459,6 +459,7 @@ class ModalState:
     turning: Turning = NO_TURNING
     c_axis: str = ""
     transition: Transition = THROUGH
+    interim_point: dict[int, float] | None = None
     once: Transition | None = None
     contour: Contour = DEFAULT_CONTOUR
     following: Iterator[Step] | None = None
@@ -485,7 +486,7 @@ class ModalState:
         self.turning = self.turning._replace(diameter=other.turning.diameter, feed=other.turning.feed)
         changes = self.coordinates.changes
         self.slope, self.coordinates = other.slope, other.coordinates
-        self.transition, self.contour = other.transition, other.contour
+        self.transition, self.contour, self.interim_point = other.transition, other.contour, other.interim_point
         self.coordinates.changes = changes
         self.tool.d, self.tool.data = other.tool.d, other.tool.data
         engaged = self.radius_compensation.engaged

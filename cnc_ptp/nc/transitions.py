@@ -11,6 +11,7 @@ from cnc_ptp.nc.expressions.nodes import Node
 from cnc_ptp.nc.flow.command_words import Words
 from cnc_ptp.nc.flow.lines import Flow, Line, Statement
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
+from cnc_ptp.nc.turning import radius_of
 
 LENGTHS: Final = ("PATH_DEV", "PRE_DIST", "POST_DIST")
 """Words in mm or inch."""
@@ -63,6 +64,33 @@ def once(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> No
 EXACT_ONCE: Final = 9
 
 
+def through_point(
+    channel: Channel, state: ModalState, block: NcBlock, transition: Transition, corner: tuple[float, ...]
+) -> Transition:
+    """The transition at a `corner` (programmed position) with the interim point of POS, which is for this corner alone.
+
+    Without a point it is an exact stop. Raises ProgramError 21115 where nothing is known of the curve beforehand.
+    """
+    contour, given = transition.contour, state.interim_point
+    if contour is None or contour.mode != POS:
+        return transition
+    state.interim_point = None
+    if given is None:
+        return EXACT_STOP._replace(smoothing=transition.smoothing)
+    kinematics = state.coordinates.kinematics
+    if state.radius_compensation.on or kinematics is not None:
+        what = "compensation of the tool radius" if kinematics is None else kinematics.name
+        raise faults.POINT_NOT_POSSIBLE.at(block.source, 1, what=what)
+    point = tuple([given.get(place, value) for place, value in enumerate(corner)])
+    if state.frame is not None:
+        point = state.frame.to_machine(point)
+    room = list(channel.soft_limits)
+    for place, (low, high) in (state.coordinates.limits or {}).items():
+        if room:
+            room[place] = max(low, room[place][0]), min(high, room[place][1])
+    return transition._replace(contour=contour._replace(point=point, room=tuple(room)))
+
+
 class ContourMode(Statement):
     """#CONTOUR MODE."""
 
@@ -77,21 +105,20 @@ class ContourMode(Statement):
             given = values_of(execution, line, options, at_corner=self.mode == POS)
             fields = state.contour._asdict() | {word.lower(): value for word, value in given.items()}
             state.contour = Contour(**fields)._replace(mode=self.mode)
-        if self.mode == POS:
-            state.contour = state.contour._replace(point=self.interim_point(execution, line))
+        state.interim_point = self.interim_point(execution, line) if self.mode == POS else None
         if self.switch == "OFF":
             through(state)
         elif self.switch == "ON" or state.transition.contour is not None:
             contouring(state)
         return None
 
-    def interim_point(self, execution: Flow, line: Line) -> tuple[float, ...]:
-        """In machine coordinates; an axis that is not given keeps its programmed position.
+    def interim_point(self, execution: Flow, line: Line) -> dict[int, float]:
+        """Programmed positions by the place of the axis, those that are given.
 
         Raises ProgramError 20797 for an axis that the channel does not have.
         """
         values, state = execution.values, execution.values.state
-        point = list(state.programmed)
+        point: dict[int, float] = {}
         for axis, node in self.options.items():
             if axis not in MAIN_AXES:
                 continue
@@ -100,8 +127,8 @@ class ContourMode(Statement):
                 known = ", ".join(values.channel.axes)
                 raise faults.AXIS_UNKNOWN.at(line.source, node.column, word=axis, known=known)
             value = values.bounded(node.value(values), node.column, "the command")
-            point[place] = value * state.coordinates.unit
-        return tuple(point) if state.frame is None else state.frame.to_machine(point)
+            point[place] = radius_of(state, place, value * state.coordinates.unit)
+        return point
 
 
 class SmoothingMode(Statement):

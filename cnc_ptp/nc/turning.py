@@ -86,6 +86,14 @@ def as_programmed(state: ModalState, index: int, position: float) -> float:
     return 2.0 * position
 
 
+def radius_of(state: ModalState, place: int, value: float) -> float:
+    """An absolute position of an axis (mm, deg) from its word, which is a diameter with G51."""
+    axis = state.turning.diameter
+    if axis is None or axis.place != place or not axis.absolute or is_cartesian(state, place):
+        return value
+    return 0.5 * value
+
+
 def is_cartesian(state: ModalState, place: int) -> bool:
     """Words of the axis are Cartesian (#FACE), and no diameters with G51."""
     kinematics = state.coordinates.kinematics

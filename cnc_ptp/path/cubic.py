@@ -7,6 +7,7 @@ each other with continuous q1 and q2, so the acceleration of the axes is continu
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import copysign, sqrt
 from typing import Final
 
 from cnc_ptp.path.shape import AxisState, Bounds, Shape, speed_of
@@ -55,6 +56,27 @@ class Cubic:
                 first = max(first, abs(first0 - 0.5 * second0 * second0 / third))
             found.append((first, max(abs(second0), abs(second1)), abs(third)))
         return found
+
+    def within(self, room: Sequence[tuple[float, float]]) -> bool:
+        """All of it lies between the lowest and highest position of each axis, if `room` has them."""
+        for axis, (low, high) in enumerate(room):
+            ends = [self.start[axis][0], self.target[axis]]
+            ends += [self.shape(u)[axis][0] for u in self._turning_points(axis)]
+            if min(ends) < low or max(ends) > high:
+                return False
+        return True
+
+    def _turning_points(self, axis: int) -> list[float]:
+        """Places within the piece at which the axis stands: q1 + q2·u + q3·u²/2 = 0."""
+        _, q1, q2, q3 = self.start[axis]
+        square = q2 * q2 - 2.0 * q1 * q3
+        if square < 0.0:
+            return []
+        root = -(q2 + copysign(sqrt(square), q2))
+        found = [2.0 * q1 / root] if root != 0.0 else []
+        if q3 != 0.0:
+            found.append(root / q3)
+        return [u for u in found if 0.0 < u < self.length]
 
     def speed(self, u: float, axes: Sequence[int]) -> float:
         """|dq/du| of the given axes: the path velocity is u' times that."""

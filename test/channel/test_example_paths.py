@@ -9,6 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from machine_support import MachineBench
 from program_segments import findings
 
 from cnc_ptp.nc.faults import ProgramError
@@ -64,3 +65,13 @@ def test_an_interim_point_beyond_a_soft_limit_is_refused(tmp_path: Path) -> None
     program.write_text("G00 X0 Y0\n#CONTOUR MODE [POS X10 Y-201]\nG61 G01 X10 F3000\nY10\nM30\n")
     with pytest.raises(ProgramError, match="axis Y: -201 mm lies beyond the negative soft limit -200 mm"):
         findings(MILL, str(program))
+
+
+def test_a_curve_that_would_leave_the_soft_limits_is_an_exact_stop(tmp_path: Path) -> None:
+    """Its points lie within the limit of 300 mm, the curve between them would reach 314.5 mm."""
+    program = "#CONTOUR MODE [POS PRE_DIST=0 POST_DIST=0 X250 Y50]\nG61 G01 X300 F3000\nY100\nM30\n"
+    bench = MachineBench("G00 X250\n" + program).run()
+    assert bench.errors() == []
+    assert max(bench.column("x", "set_position")) == 300.0
+    inside = MachineBench("G00 X200\n" + program.replace("X300", "X250").replace("X250 Y50", "X200 Y50")).run()
+    assert 260.0 < max(inside.column("x", "set_position")) < 300.0

@@ -443,6 +443,19 @@ def test_no_curve_through_a_point_where_the_path_is_left_or_met():
     assert corner_of((0, 0, 0), (10, 0, 0), (10, 10, 0), contour=contour._replace(point=(10.0, 3.0, 0.0))) is None
 
 
+@pytest.mark.parametrize("axis", [0, 1])
+def test_no_curve_through_a_point_beyond_the_room_of_an_axis(axis):
+    """Its extremes count, sampled here, not its ends."""
+    contour = Contour(mode=POS, pre_dist=0.0, post_dist=0.0, point=(12.0, -2.0, 0.0))
+    _, curves, _ = corner_of((0, 0, 0), (10, 0, 0), (10, 10, 0), contour=contour)
+    sampled = [span.shape(span.length * n / 500)[axis][0] for span in curves for n in range(501)]
+    for share, possible in ((1e-5, True), (-1e-5, False)):
+        room = [(-100.0, 100.0)] * 3
+        room[axis] = (min(sampled) - share, max(sampled) + share)
+        found = corner_of((0, 0, 0), (10, 0, 0), (10, 10, 0), contour=contour._replace(room=tuple(room)))
+        assert (found is not None) is possible
+
+
 def test_no_curve_through_a_point_with_a_kink_of_another_axis():
     contour = Contour(mode=POS, track_dev=1.0, point=(9.0, 1.0, 0.0, 0.0))
     assert corner_of((0, 0, 0, 0), (10, 0, 0, 0), (10, 10, 0, 5), contour=contour) is None

@@ -64,7 +64,8 @@ def corner(a: Span, b: Span, contour: Contour, path_axes: Sequence[int]) -> Corn
 
     The first piece belongs to the block of A, the others to that of B. None if there can be no curve: the path reverses
     or rests on one side, a block is too short, the angle is above MAX_ANGLE, or an axis beside those of the path has a
-    kink and there is no TRACK_DEV. With an interim point also if it is where the path is left or met.
+    kink and there is no TRACK_DEV. With an interim point also if it is where the path is left or met, or if the curve
+    would leave the room of the axes.
     """
     end, start = a.shape(a.length), b.shape(0.0)
     kinks, jumps = direction_jumps(end, start), curvature_jumps(end, start)
@@ -87,7 +88,7 @@ def corner(a: Span, b: Span, contour: Contour, path_axes: Sequence[int]) -> Corn
     if contour.mode == POS:
         middle = [contour.point[axis] if axis in path_axes else start[axis][0] for axis in range(len(start))]
         halves = through(first.shape(first.length), last.shape(0.0), middle, path_axes)
-        if halves is None:
+        if halves is None or not all(piece.within(contour.room) for piece in halves):
             return None
         return first, [whole(piece, a.block if index < 3 else b.block) for index, piece in enumerate(halves)], last
     length = a.end - first.end + (last.begin - b.begin)
