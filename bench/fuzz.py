@@ -119,8 +119,6 @@ WORDS = (
 MACHINES = (
     "config/mill.yaml",
     "config/lathe.yaml",
-    "examples/lathe.yaml",
-    "examples/lathe_c.yaml",
     "examples/probe.yaml",
     "examples/spindles/three_spindles.yaml",
     "examples/spindles/gears_programmed.yaml",
