@@ -25,10 +25,10 @@ from cnc_ptp.nc.canonical import (
     led_by_spindle,
     number,
 )
+from cnc_ptp.nc.coordinates.frame import LEAST
 from cnc_ptp.nc.motions import target_of
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
 from cnc_ptp.nc.spindles import ROTATION, current_main, name_of, names, require_spindle
-from cnc_ptp.nc.thread_retract import machine_retract
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 
 PITCH_WORDS: Final = frozenset("IJK")
@@ -57,9 +57,25 @@ def thread(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> 
     modes, change = state.thread, _change(state, block, code, ways[axis])
     turns = 2.0 * ways[axis] / (modes.pitch + sqrt(modes.pitch**2 + 2.0 * change * ways[axis]))
     spindle, place = current_main(channel, state).key, channel.axis_index[axis]
-    retract = machine_retract(state, block, code)
+    retract = _machine_retract(state, block, code)
     led = Thread(spindle, TURN * turns, modes.pitch, place, modes.offset, change=change, retract=retract)
     return LinearMove(tuple(target), False, 0.0, thread=led)
+
+
+def _machine_retract(state: ModalState, block: NcBlock, code: GCode) -> tuple[int, float] | None:
+    """Place of the axis and way (mm) of the retract of the program, as mirror, scale and rotation make them.
+
+    None: that of the machine file. Raises ProgramError 21673.
+    """
+    retract, frame = state.thread.retract, state.frame
+    if retract is None or retract[1] == 0.0 or frame is None or not frame.turned:
+        return retract
+    column = frame.main.index(retract[0])
+    ways = [row[column] * retract[1] for row in frame.linear]
+    largest = max(range(3), key=lambda place: abs(ways[place]))
+    if sum(map(abs, ways)) - abs(ways[largest]) > LEAST * abs(ways[largest]):
+        raise thread_faults.RETRACT_ASKEW.at(block.source, block.source.column(code.name))
+    return frame.main[largest], ways[largest]
 
 
 def _target_of(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> list[float] | None:

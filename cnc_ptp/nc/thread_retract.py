@@ -6,31 +6,14 @@ from typing import Final
 
 from cnc_ptp.nc import thread_faults
 from cnc_ptp.nc.coordinates.commands import axis_index, bounded
-from cnc_ptp.nc.coordinates.frame import LEAST
 from cnc_ptp.nc.expressions.nodes import Node
 from cnc_ptp.nc.flow.command_words import Words
 from cnc_ptp.nc.flow.lines import Flow, Line, Statement
-from cnc_ptp.nc.program import GCode, ModalState, NcBlock
+from cnc_ptp.nc.program import NcBlock
 
 COMMAND: Final = "#THREAD RETRACT"
 SYNTAX: Final = "#THREAD RETRACT X-5, in the direction of the axis, or #THREAD RETRACT OFF or DEFAULT"
 AXES: Final = ("X", "Y", "Z")
-
-
-def machine_retract(state: ModalState, block: NcBlock, code: GCode) -> tuple[int, float] | None:
-    """Place of the axis and way (mm) of the retract of the program, as mirror, scale and rotation make them.
-
-    None: that of the machine file. Raises ProgramError 21673.
-    """
-    retract, frame = state.thread.retract, state.frame
-    if retract is None or retract[1] == 0.0 or frame is None or not frame.turned:
-        return retract
-    column = frame.main.index(retract[0])
-    ways = [row[column] * retract[1] for row in frame.linear]
-    largest = max(range(3), key=lambda place: abs(ways[place]))
-    if sum(map(abs, ways)) - abs(ways[largest]) > LEAST * abs(ways[largest]):
-        raise thread_faults.RETRACT_ASKEW.at(block.source, block.source.column(code.name))
-    return frame.main[largest], ways[largest]
 
 
 class ThreadRetract(Statement):
