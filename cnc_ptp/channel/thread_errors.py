@@ -91,34 +91,41 @@ class ThreadErrors:
     def take(self, first_cycle: int, feedback: Mapping[str, CycleBlock]) -> list[ThreadError]:
         """Of each cycle of the block before `first_cycle`; empty if no thread acted in it."""
         if not self._places:
+            self._last_turn.clear()
             return []
-        spindle = feedback.get(next(iter(self._places.values())).spindle)
-        if not isinstance(spindle, SpindleBlock) or spindle.first_cycle + spindle.count != first_cycle:
+        reported = dict.fromkeys(place.spindle for place in self._places.values())
+        spindles = {node: block for node in reported if (block := ended_at(first_cycle, feedback.get(node)))}
+        if not spindles:
             self._forget(first_cycle)
+            self._last_turn.clear()
             return []
-        self._note_set_angles(spindle)
-        errors = [self._error(cycle, spindle, feedback) for cycle in range(spindle.first_cycle, first_cycle)]
+        for node, block in spindles.items():
+            self._note_set_angles(node, block)
+        begin = min(block.first_cycle for block in spindles.values())
+        errors = [self._error(cycle, spindles, feedback) for cycle in range(begin, first_cycle)]
         self._forget(first_cycle)
         return errors if any(error is not NO_THREAD for error in errors) else []
 
-    def _note_set_angles(self, spindle: SpindleBlock) -> None:
+    def _note_set_angles(self, node: str, spindle: SpindleBlock) -> None:
         """Tapping: the angle that belongs to a setpoint is the set angle of its cycle."""
         for index, angle in enumerate(spindle.set_position_deg):
             place = self._places.get(spindle.first_cycle + index)
-            if place is not None and isnan(place.angle):
+            if place is not None and place.spindle == node and isnan(place.angle):
                 self._places[spindle.first_cycle + index] = place._replace(angle=angle)
 
     def _forget(self, first_cycle: int) -> None:
         """Places that have acted before."""
         self._places = {cycle: place for cycle, place in self._places.items() if cycle + self._delay >= first_cycle}
 
-    def _error(self, cycle: int, spindle: SpindleBlock, feedback: Mapping[str, CycleBlock]) -> ThreadError:
+    def _error(
+        self, cycle: int, spindles: Mapping[str, SpindleBlock], feedback: Mapping[str, CycleBlock]
+    ) -> ThreadError:
         place = self._places.get(cycle - self._delay)
-        index = cycle - spindle.first_cycle
-        if place is None or place.lead == 0.0:
+        spindle = None if place is None else spindles.get(place.spindle)
+        if place is None or spindle is None or place.lead == 0.0 or cycle < spindle.first_cycle:
             self._last_turn.clear()
             return NO_THREAD
-        angle = spindle.actual_position_deg[index]
+        angle = spindle.actual_position_deg[cycle - spindle.first_cycle]
         set_phase = place.angle - angle
         lag = self._actual_position(place.axis, cycle, feedback) - place.position
         actual_phase = set_phase + TURN * lag / place.lead
@@ -132,6 +139,13 @@ class ThreadErrors:
         if not isinstance(block, AxisBlock) or not 0 <= cycle - block.first_cycle < block.count:
             return nan
         return block.actual_position[cycle - block.first_cycle]
+
+
+def ended_at(first_cycle: int, block: CycleBlock | None) -> SpindleBlock | None:
+    """The report of a spindle for the cycles right before `first_cycle`."""
+    if not isinstance(block, SpindleBlock) or block.first_cycle + block.count != first_cycle:
+        return None
+    return block
 
 
 def add_thread(block: ChannelBlock, errors: Sequence[ThreadError]) -> None:

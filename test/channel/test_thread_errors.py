@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -152,4 +151,19 @@ def test_a_spindle_that_does_not_report_leaves_them_out():
     places = ThreadErrors(["z"], 0)
     places.note(10, 10, {3: ThreadPlace("s", 0, 1.0, -1.5, 30.0)})
     assert places.take(20, {}) == []
-    assert math.isnan(ThreadPlace("s", 0, 1.0, -1.5).angle)
+
+
+@pytest.mark.parametrize("count", [1, 10])
+def test_each_hole_has_a_first_turn_of_its_own(count):
+    """Also where a block of cycles ends with the first one: the pitch counts from a whole turn on."""
+    text = "%T\nG17 G90\nM19 S.POS=0 S100\nG00 X10 Y10 Z5\nG63 Z-5 F250 S200\nZ5 S-200\nG00 X20\nG63 Z-5 F250 S200\nZ5 S-200\nM30\n"
+    bench = MachineBench(text, machine=replace(MILL, block_cycles=count)).run()
+    found = errors(bench)
+    inside = ~np.isnan(found["lead"])
+    starts = np.flatnonzero(np.diff(np.concatenate(([0], inside.astype(int)))) == 1)
+    angle = column(bench, "s", "actual_position_deg")
+    assert len(starts) == 2
+    for start in starts:
+        first = np.flatnonzero(~np.isnan(found["set_pitch_error"][start:]))[0] + start
+        assert abs(angle[first] - angle[start]) >= 360.0
+        assert abs(angle[first - 1] - angle[start]) <= 360.0
