@@ -93,15 +93,18 @@ class ThreadErrors:
         if not self._places:
             self._last_turn.clear()
             return []
-        reported = dict.fromkeys(place.spindle for place in self._places.values())
-        spindles = {node: block for node in reported if (block := ended_at(first_cycle, feedback.get(node)))}
+        spindles: dict[str, SpindleBlock] = {}
+        for place in self._places.values():
+            block = ended_at(first_cycle, feedback.get(place.spindle))
+            if block is not None:
+                spindles[place.spindle] = block
         if not spindles:
             self._forget(first_cycle)
             self._last_turn.clear()
             return []
-        for node, block in spindles.items():
-            self._note_set_angles(node, block)
-        begin = min(block.first_cycle for block in spindles.values())
+        for node, report in spindles.items():
+            self._note_set_angles(node, report)
+        begin = min([report.first_cycle for report in spindles.values()])
         errors = [self._error(cycle, spindles, feedback) for cycle in range(begin, first_cycle)]
         self._forget(first_cycle)
         return errors if any(error is not NO_THREAD for error in errors) else []
