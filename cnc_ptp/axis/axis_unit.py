@@ -31,8 +31,11 @@ from cnc_ptp.motion.setpoints import MotionState, Setpoints
 from cnc_ptp.parameters import AxisParameters
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import StatusBit
-from cnc_ptp.protocol.blocks import AxisBlock, CycleBlock, CycleTick, Severity
+from cnc_ptp.protocol.blocks import AxisBlock, Command, CycleBlock, CycleTick, Severity
 from cnc_ptp.protocol.unit import UPSTREAM_LOST, Handler, Unit
+
+ADDITIONS = ("external_enable", "external_disable")
+"""Commands whose motion may be added to another one."""
 
 
 class AxisUnit(Unit):
@@ -124,6 +127,13 @@ class AxisUnit(Unit):
         group = next(group for group in self._commands if hasattr(group, f"do_{command}"))
         handler: Handler = getattr(group, f"do_{command}")
         return handler
+
+    def begin_job(self, command: Command, cycle: int) -> int:
+        """See Unit: the end of a jog where there is none, and what is added to another motion, begin no job."""
+        state = self._axis.state
+        ends_no_jog = command.command == "jog" and not command.arguments["velocity"] and not self._axis.has_been_stopped
+        added = command.command in ADDITIONS and state in (S.DISCRETE_MOTION, S.SYNCHRONIZED_MOTION)
+        return 0 if ends_no_jog or added else super().begin_job(command, cycle)
 
     def do_upstream_lost(self, cycle: int, *, source: str) -> str | None:
         """The watchdog: `source` has sent nothing in time; without its channel only an axis on the path stops."""

@@ -132,6 +132,8 @@ class ChannelUnit(Unit):
         self._element_begins = False
         """The active element starts with the next block: what axes report belongs to the previous one."""
         self._error_id = 0
+        self._resumed = False
+        """The last start has resumed a program."""
         self._apply_override()
 
     def _initial_state(self, feedback: Mapping[str, CycleBlock]) -> ProgramState:
@@ -200,7 +202,8 @@ class ChannelUnit(Unit):
         Raises ProgramError, 22001, 22003 … 22005, 22040 … 22044.
         """
         point = start_point(line, block_number, in_program, pass_number, self._refuse)
-        if self._sequence.phase is Phase.STOPPED:
+        self._resumed = self._sequence.phase is Phase.STOPPED
+        if self._resumed:
             if point is not None:
                 at = self._sequence.source.line
                 self._refuse("start", NOT_NOW, f"the program is stopped in line {at} and can only be resumed there")
@@ -314,6 +317,10 @@ class ChannelUnit(Unit):
         """The event for which a measuring run and functions of type MNE_SNS wait; refused (22020) without either."""
         if not self._sequence.measuring_event():
             self._refuse("measuring_event", NOTHING_AWAITS_EVENT, "nothing in the running block waits for one")
+
+    def begin_job(self, command: Command, cycle: int) -> int:
+        """See Unit: a program that is resumed is the same job."""
+        return self.jobs.active if command.command == "start" and self._resumed else super().begin_job(command, cycle)
 
     def do_upstream_lost(self, cycle: int, *, source: str) -> None:
         """Watchdog: PLC, clock, an axis or a spindle has not published in time; the path stops."""

@@ -6,7 +6,16 @@ from collections.abc import Iterator, Mapping
 
 from cnc_ptp.machine.silence import Silence
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
-from cnc_ptp.protocol.blocks import ChannelBlock, Command, CommandRecord, CycleBlock, CycleTick, PlcBlock, Severity
+from cnc_ptp.protocol.blocks import (
+    ChannelBlock,
+    Command,
+    CommandAnswer,
+    CommandRecord,
+    CycleBlock,
+    CycleTick,
+    PlcBlock,
+    Severity,
+)
 from cnc_ptp.protocol.channel_states import ChannelStateCode
 from cnc_ptp.protocol.unit import PLC, Unit
 
@@ -20,6 +29,7 @@ class UnitRunner:
         """`watchdog_cycles`: a life sign of the PLC that does not change for that long is lost."""
         self.unit = unit
         self.next_cycle = 0
+        self._answers: list[CommandAnswer] = []
         self._life_sign = -1
         self._silence = Silence(watchdog_cycles - 1)
         self._state: int | None = None
@@ -41,8 +51,10 @@ class UnitRunner:
     def apply(self, tick: CycleTick, inputs: Mapping[str, CycleBlock]) -> None:
         """Applies the commands that `inputs` carry for this unit."""
         self.next_cycle = tick.first_cycle
-        for command in commands_for(self.unit.name, inputs):
-            self.unit.command(command, tick.first_cycle)
+        for sender, command in commands_for(self.unit.name, inputs):
+            record = self.unit.command(command, tick.first_cycle)
+            if sender == PLC:
+                self._answers.append(CommandAnswer(command.id, record.error_id, record.job, record.message))
         self._watch_life_sign(tick, inputs)
 
     def compute(self, tick: CycleTick, inputs: Mapping[str, CycleBlock]) -> CycleBlock:
@@ -55,8 +67,17 @@ class UnitRunner:
             inputs = {name: block for name, block in inputs.items() if not alone and name not in self.unit.lost}
         block = self.unit.step(tick, inputs)
         self.next_cycle = tick.first_cycle + tick.count
+        self._tell_plc(block)
         self._note_state(block)
         return block
+
+    def _tell_plc(self, block: CycleBlock) -> None:
+        """Answers to the commands of the PLC, and what has become of jobs."""
+        if isinstance(block, PlcBlock):
+            return
+        self.unit.note_jobs(block)
+        block.job, block.job_events = self.unit.jobs.active, self.unit.jobs.take_events()
+        block.answers, self._answers = self._answers, []
 
     def _note_state(self, block: CycleBlock) -> None:
         """An event when the unit ends the block in another state than the previous block."""
@@ -82,10 +103,10 @@ class UnitRunner:
             self.unit.command(Command(self.unit.name, "upstream_lost", {"source": PLC}), tick.first_cycle)
 
 
-def commands_for(name: str, inputs: Mapping[str, CycleBlock]) -> Iterator[Command]:
-    """The commands for unit `name` that travel in the blocks of this tick, in the order of sender and sending."""
-    for block in inputs.values():
+def commands_for(name: str, inputs: Mapping[str, CycleBlock]) -> Iterator[tuple[str, Command]]:
+    """Sender and command for unit `name` that travel in the blocks of this tick, in the order of sender and sending."""
+    for sender, block in inputs.items():
         if isinstance(block, (PlcBlock, ChannelBlock)):
             for command in block.commands:
                 if command.target == name:
-                    yield command
+                    yield sender, command

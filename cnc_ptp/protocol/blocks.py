@@ -78,6 +78,8 @@ class CommandRecord:
     id: int = 0
     values: Mapping[str, Value] = field(default_factory=dict, compare=False)
     """Values of the refusal's text, in the unit that has refused; messages do not hold them."""
+    job: int = field(default=0, compare=False)
+    """Number of the job that it has begun (protocol/jobs.py), 0 if none; messages do not hold it."""
 
     @property
     def arguments_json(self) -> str:
@@ -149,6 +151,24 @@ class ChannelOffsets:
     origin: list[float] = field(default_factory=list)
 
 
+class CommandAnswer(NamedTuple):
+    """What a unit answers to a command of the PLC (CommandAnswer.msg)."""
+
+    id: int
+    error_id: int = 0
+    job: int = 0
+    message: str = ""
+
+
+class JobEvent(NamedTuple):
+    """What has become of a job (JobEvent.msg, protocol/jobs.py)."""
+
+    job: int
+    status: int
+    cycle: int
+    error_id: int = 0
+
+
 class CycleTick(NamedTuple):
     """The cycles first_cycle .. first_cycle + count - 1 are to be computed (CycleTick.msg)."""
 
@@ -208,6 +228,9 @@ class ChannelBlock:
     offsets: list[ChannelOffsets] = field(default_factory=list)
     commands: list[Command] = field(default_factory=list)
     requests: list[HandshakeRequest] = field(default_factory=list)
+    job: int = 0
+    job_events: list[JobEvent] = field(default_factory=list)
+    answers: list[CommandAnswer] = field(default_factory=list)
 
 
 @dataclass(slots=True)
@@ -244,6 +267,9 @@ class AxisBlock:
     probe_switched: bool = False
     probe_cycle: float = 0.0
     probe_position: float = 0.0
+    job: int = 0
+    job_events: list[JobEvent] = field(default_factory=list)
+    answers: list[CommandAnswer] = field(default_factory=list)
 
 
 class Refusal(NamedTuple):
@@ -300,6 +326,9 @@ class SpindleBlock:
     plc_acknowledged: int = 0
     refused: list[Refusal] = field(default_factory=list)
     commands: list[Command] = field(default_factory=list)
+    job: int = 0
+    job_events: list[JobEvent] = field(default_factory=list)
+    answers: list[CommandAnswer] = field(default_factory=list)
 
 
 CycleBlock = PlcBlock | ChannelBlock | AxisBlock | SpindleBlock

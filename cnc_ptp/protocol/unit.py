@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Event, EventValue, Severity, json_of
 from cnc_ptp.protocol.commands import OF_PLC, check_command, current_names, with_floats
+from cnc_ptp.protocol.jobs import JOBS, Jobs
 
 Handler = Callable[..., str | None]
 
@@ -33,6 +34,8 @@ class Unit(ABC):
         """Events since the last block; the harness takes them away."""
         self.records: list[CommandRecord] = []
         """Commands carried out or refused since the last block; the harness takes them away."""
+        self.jobs = Jobs()
+        """Its motions and programs, by number."""
         self.sources: Collection[str] = ()
         """Who may command a spindle; without them every name is accepted."""
         self.lost: set[str] = set()
@@ -48,9 +51,11 @@ class Unit(ABC):
 
     def command(self, command: Command, cycle: int) -> CommandRecord:
         """Carries out or refuses a command that takes effect at `cycle`, the first cycle of the next block."""
-        refusal = None
+        refusal, job = None, 0
         try:
             self._dispatch(command.command, command.arguments, cycle)
+            if command.command in JOBS[self.kind]:
+                job = self.begin_job(command, cycle)
         except CncError as error:
             refusal = error
             self.event(cycle, Severity.WARNING, error.number, error.full_message)
@@ -65,11 +70,20 @@ class Unit(ABC):
             message=refusal.full_message if refusal else self._warning,
             id=command.id,
             values=refusal.values if refusal else {},
+            job=job,
         )
         self.records.append(record)
         return record
 
     _warning = ""
+
+    def begin_job(self, command: Command, cycle: int) -> int:
+        """A command that is a job was carried out: the number of the job, 0 if there was nothing to do."""
+        return self.jobs.begin(cycle)
+
+    def note_jobs(self, block: CycleBlock) -> None:
+        """Ends the active job when its unit has come to rest in a new block."""
+        self.jobs.watch(block)
 
     def _dispatch(self, command: str, arguments: Mapping[str, Any], cycle: int) -> None:
         self._warning = ""

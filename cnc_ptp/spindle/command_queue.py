@@ -33,6 +33,8 @@ class QueuedCommand(NamedTuple):
     source: str
     number: int = 0
     """Identifies the command when its outcome is queried."""
+    job: int = 0
+    """Number of its job (protocol/jobs.py), 0 if it is none."""
     master_source: str | None = None
     """Of a slave: who has commanded its master, empty for users. None for a command to the spindle itself."""
 

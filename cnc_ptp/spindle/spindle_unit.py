@@ -14,6 +14,7 @@ from cnc_ptp.parameters import GearParameters, SpindleParameters
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Refusal, Severity, SpindleBlock
+from cnc_ptp.protocol.jobs import JOBS
 from cnc_ptp.protocol.spindle_states import held_by_override
 from cnc_ptp.protocol.unit import PLC, UPSTREAM_LOST, Handler, Unit
 from cnc_ptp.spindle.command_queue import MOTION, CommandQueue, QueuedCommand
@@ -77,6 +78,9 @@ class SpindleUnit(Unit):
         self._cycles = SpindleCycles(self.spindle, procedures, self._queue, self._rotation)
         self.next_number = 1
         """Number of the next motion command."""
+        self._waiting_jobs: set[int] = set()
+        self._job_given = 0
+        """Number for the job of the command that is carried out now, 0 if it is none."""
         self._turned_down: tuple[int, CncError | None] = 0, None
         self._passed_on: list[Command] = []
         self._refused: list[Refusal] = []
@@ -131,6 +135,7 @@ class SpindleUnit(Unit):
         self, command: str, cycle: int, *, source: str = "", own: bool = False, **arguments: Any
     ) -> str | None:
         """`own`: a stop that counts only while nobody else has commanded the spindle since."""
+        self._job_given = 0
         self._path.check(command)
         commander = self._queue.commander
         if own and commander and commander != source:
@@ -139,16 +144,34 @@ class SpindleUnit(Unit):
                 f"spindle {self.name}: stop of '{source}' without effect, '{commander}' has commanded the spindle since"
             )
         self._queue.check(command, source, self._coupling.master)
-        queued = QueuedCommand(command, arguments, source, self.next_number)
+        job = self.jobs.newest + 1 if command in JOBS[self.kind] else 0
+        queued = QueuedCommand(command, arguments, source, self.next_number, job)
         self.next_number += 1
         if self._queue.must_wait(command, source):
             self.spindle.require_ready(command)
             message = self._waiting(queued)
             self._queue.add(queued)
+            self._waiting_jobs.add(job)
         else:
             message = self._carry_out(cycle, queued)
         self._queue.taken += source == PLC
+        self._job_given = job
         return message
+
+    def begin_job(self, command: Command, cycle: int) -> int:
+        """See Unit: a job that waits for its turn becomes active then; a stop without effect is none."""
+        if command.command not in MOTION:
+            return super().begin_job(command, cycle)
+        return self.jobs.accept() if self._job_given else 0
+
+    def note_jobs(self, block: CycleBlock) -> None:
+        """See Unit: between the steps of a job the spindle may be at rest; jobs that no longer wait are aborted."""
+        if self.spindle.work.procedure is None:
+            self.jobs.watch(block)
+        waiting = {command.job for command in self._queue.waiting}
+        for job in sorted(self._waiting_jobs - waiting - {0}):
+            self.jobs.drop(block.first_cycle, job)
+        self._waiting_jobs &= waiting
 
     def _waiting(self, command: QueuedCommand) -> str | None:
         """The warning that tells PLC and users what their command waits for; a program waits without one."""
@@ -167,6 +190,9 @@ class SpindleUnit(Unit):
         message = self._group_handler(command.name)(cycle, **command.arguments)
         if work.procedure is not None and work.procedure is not before:
             work.procedure.number = command.number
+        if command.job:
+            self._waiting_jobs.discard(command.job)
+            self.jobs.activate(cycle, command.job)
         if command.name == "stop":
             self._queue.clear()
         if self._has_effect(command.name, new_procedure=work.procedure is not before, turned=turned):
@@ -214,6 +240,9 @@ class SpindleUnit(Unit):
                 self._carry_out(cycle, command)
             except CncError as error:
                 self._turned_down = command.number, error
+                self._waiting_jobs.discard(command.job)
+                if command.job:
+                    self.jobs.drop(cycle, command.job, error.number)
                 self.event(cycle, Severity.WARNING, error.number, error.message)
                 if command.source:
                     self._refused.append(Refusal(command.source, error.number, error.message))

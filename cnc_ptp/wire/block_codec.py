@@ -1,7 +1,7 @@
 """Blocks of units as messages (CDR) and back: what goes over a topic is what a recording holds.
 
 Blocks are numbers of a shape that seldom changes: they are packed by a form, found once for each shape. Blocks that
-carry commands, requests or refusals are encoded field by field.
+carry commands, answers, requests or refusals are encoded field by field.
 """
 
 from __future__ import annotations
@@ -17,8 +17,10 @@ from cnc_ptp.protocol.blocks import (
     ChannelBlock,
     ChannelOffsets,
     Command,
+    CommandAnswer,
     CycleBlock,
     HandshakeRequest,
+    JobEvent,
     PlcBlock,
     Refusal,
     SpindleBlock,
@@ -34,13 +36,15 @@ FORMS_KEPT = 1000
 
 _SHAPES: dict[type, Callable[[Any], Hashable]] = {
     PlcBlock: lambda block: None if block.commands else True,
-    AxisBlock: lambda block: (block.count, block.master),
+    AxisBlock: lambda block: None if block.answers or block.job_events else (block.count, block.master),
     SpindleBlock: lambda block: (
-        None if block.commands or block.refused else (block.count, block.master, block.master_wanted, block.source)
+        None
+        if block.commands or block.refused or block.answers or block.job_events
+        else (block.count, block.master, block.master_wanted, block.source)
     ),
     ChannelBlock: lambda block: (
         None
-        if block.commands or block.requests or block.offsets
+        if block.commands or block.requests or block.offsets or block.answers or block.job_events
         else (
             block.count,
             *block.axes,
@@ -57,6 +61,8 @@ _SHAPES: dict[type, Callable[[Any], Hashable]] = {
 _NESTED: dict[str, Callable[[Any], Any]] = {
     "commands": lambda sent: Command(sent.target, sent.command, json.loads(sent.arguments_json), sent.id),
     "refused": lambda text: Refusal.decode(text),
+    "job_events": lambda sent: JobEvent(sent.job, sent.status, sent.cycle, sent.error_id),
+    "answers": lambda sent: CommandAnswer(sent.id, sent.error_id, sent.job, sent.message),
     "offsets": lambda sent: channel_offsets(sent),
     "requests": lambda sent: HandshakeRequest(
         **{name: getattr(sent, name) for name in HandshakeRequest.__dataclass_fields__}

@@ -265,7 +265,10 @@ def test_input_goes_out_with_the_next_block_in_order_with_numbers() -> None:
         (2, "x", {"percent": 20.0}),
     ]
     assert second.commands == [] and (first.life_sign, second.life_sign) == (1, 2)
-    assert list(commands_for("x", {"plc": first})) == first.commands and list(commands_for("y", {"plc": first})) == []
+    assert (
+        list(commands_for("x", {"plc": first})) == [("plc", command) for command in first.commands]
+        and list(commands_for("y", {"plc": first})) == []
+    )
 
 
 def test_a_runner_applies_service_commands_first_then_those_of_the_block() -> None:

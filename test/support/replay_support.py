@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections import defaultdict
+from dataclasses import replace
 
 from machine_support import MachineBench
 
@@ -11,12 +12,17 @@ from cnc_ptp.commands.run.replay import is_refused_coupling
 from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters
-from cnc_ptp.protocol.blocks import Command, CommandRecord
+from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, PlcBlock
 
 
 def bits(bench: MachineBench) -> dict[str, list[str]]:
     """All blocks as text: repr shows every bit of a float and tells 0.0 from -0.0."""
-    return {name: [repr(block) for block in blocks] for name, blocks in bench.blocks.items()}
+    return {name: [text_of(block) for block in blocks] for name, blocks in bench.blocks.items()}
+
+
+def text_of(block: CycleBlock) -> str:
+    """Without the answers to the PLC, which a replay does not have."""
+    return repr(block if isinstance(block, PlcBlock) else replace(block, answers=[]))
 
 
 def replay(machine: MachineParameters, records: list[CommandRecord], blocks: int) -> dict[str, list[str]]:
@@ -30,5 +36,5 @@ def replay(machine: MachineParameters, records: list[CommandRecord], blocks: int
     texts: dict[str, list[str]] = defaultdict(list)
     for number in range(blocks):
         for name, output in offline.replay_tick(by_cycle.get(number * machine.block_cycles, {})).items():
-            texts[name].append(repr(output.block))
+            texts[name].append(text_of(output.block))
     return texts

@@ -292,7 +292,7 @@ class UnitNode(PollingNode):
         else:
             record = self.command(asked)
         response.accepted, response.error_id = record.accepted, record.error_id
-        response.message, response.cycle = record.message, record.cycle
+        response.message, response.cycle, response.job = record.message, record.cycle, record.job
         self._compute_ready_blocks()  # an axis that is decoupled now no longer waits for its master
         return response
 
