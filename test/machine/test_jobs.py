@@ -88,7 +88,7 @@ def test_a_job_without_power_is_aborted() -> None:
 def test_the_plc_is_told_what_became_of_its_commands() -> None:
     """A positioning and one that must wait, a rotation, a program; ids as the PLC has sent them."""
     scenario = (
-        "- {at: 0, to: x, do: move_absolute, target: 1}\n- {at: 0, to: x, do: move_absolute, target: 2}\n"
+        "- {at: 2, to: x, do: move_absolute, target: 1}\n- {at: 2, to: x, do: move_absolute, target: 2}\n"
         "- {at: 0, to: s, do: start, direction: cw, speed_rpm: 600}\n- {at: 1, to: s, do: stop}"
     )
     bench = MachineBench("%P\nG01 Y1 F3000\nM30", scenario).run()
