@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
-from nc_support import HERE, machine, tools, turning_axes, vocabulary_of
+from nc_support import HERE, channel_of
 
 from cnc_ptp.cli import main
 from cnc_ptp.commands.language.format import format_text
@@ -17,15 +17,10 @@ GOOD = sorted((HERE / "golden").glob("*.nc"))
 
 
 def stream(text: str, name: str) -> list[str]:
-    axes, spindles = machine(text)
+    channel = channel_of(text)
     files = called_programs(text, [str(HERE / "library")])
-    program = parse_program(text, name, files=files, vocabulary=vocabulary_of(text))
-    return [
-        format_block(block)
-        for block in interpret(
-            program, (0.0,) * len(axes), axes, spindles, tools=tools(text), turning_axes=turning_axes(text)
-        )
-    ]
+    program = parse_program(text, name, files=files, vocabulary=channel.vocabulary)
+    return [format_block(block) for block in interpret(program, (0.0,) * len(channel.axes), channel)]
 
 
 @pytest.mark.parametrize("path", GOOD, ids=lambda path: path.stem)

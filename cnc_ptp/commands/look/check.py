@@ -17,16 +17,18 @@ from cnc_ptp.commands.console import print_error, print_missing_folders
 from cnc_ptp.errors import WRONG_INPUT, CncError
 from cnc_ptp.machine.program_files import NO_SEARCH, Search, is_longer, read_program, scan_program
 from cnc_ptp.machine.run_entries import program_search
+from cnc_ptp.nc.awaited import awaits_path
 from cnc_ptp.nc.block_search import StartPoint
 from cnc_ptp.nc.canonical import BUSY, CanonicalBlock
 from cnc_ptp.nc.canonical_text import format_block
+from cnc_ptp.nc.check import check as check_text
 from cnc_ptp.nc.faults import RETURN_IN_MAIN, ProgramError
 from cnc_ptp.nc.flow.calls import arguments_read
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.flow.structures import Place
-from cnc_ptp.nc.interpreter import awaits_path, interpret
-from cnc_ptp.nc.interpreter import check as check_text
+from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.parser import parse_all, parse_program
+from cnc_ptp.nc.plain_channel import plain_channel
 from cnc_ptp.nc.program import ModalState
 from cnc_ptp.nc.program_text import ProgramFile, ProgramText
 from cnc_ptp.nc.vocabularies import VOCABULARIES
@@ -35,8 +37,8 @@ from cnc_ptp.protocol.notes import Note
 
 CHECKED_TEXT = 10_000_000
 """P-CHAN-90005 without a machine: characters."""
-AXES_WITHOUT_MACHINE = ("X", "Y", "Z")
-SPINDLES_WITHOUT_MACHINE = ("S",)
+WITHOUT_MACHINE = plain_channel(("X", "Y", "Z"))
+"""Axes X Y Z and spindle S."""
 
 
 def check(
@@ -101,7 +103,8 @@ def errors_of(
 ) -> list[ProgramError]:
     """Of a program with its `files`, `cycles` and `vocabulary`."""
     if checked is None:
-        return check_text(text, program, AXES_WITHOUT_MACHINE, SPINDLES_WITHOUT_MACHINE, **given)
+        channel = WITHOUT_MACHINE._replace(vocabulary=given["vocabulary"])
+        return check_text(text, program, channel, files=given["files"], cycles=given["cycles"])
     return checked.errors(text, program, given["files"], given["vocabulary"])
 
 
@@ -132,7 +135,7 @@ class Stream:
     def __init__(self, program: Program, machine: MachineParameters | None) -> None:
         self._program = program
         self._check = None if machine is None else ProgramCheck.of_first_channel(machine, program.file)
-        self.axes = AXES_WITHOUT_MACHINE if self._check is None else self._check.axis_names
+        self.axes = WITHOUT_MACHINE.axes if self._check is None else self._check.axis_names
         self.start = (0.0,) * len(self.axes) if self._check is None else self._check.start
 
     def blocks(self, begin: ProgramStart | None = None) -> Iterator[CanonicalBlock]:
@@ -140,8 +143,7 @@ class Stream:
         if self._check is not None:
             return self._check.running(self._program, self.start, self._check.state({}, {}, {}), (), begin)
         state, search = ModalState(), None if begin is None else begin.search
-        spindles = SPINDLES_WITHOUT_MACHINE
-        stream = interpret(self._program, self.start, self.axes, spindles, state=state, runs=True, search=search)
+        stream = interpret(self._program, self.start, WITHOUT_MACHINE, state=state, runs=True, search=search)
         if begin is None:
             return stream
         return begin.blocks(stream, self.start, self.axes, state, lambda target, source: None)

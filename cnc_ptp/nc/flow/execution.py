@@ -18,15 +18,7 @@ from cnc_ptp.nc.flow.calls import check_arguments
 from cnc_ptp.nc.flow.lines import Call, Flow, Line
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.flow.structures import Place, Structure
-from cnc_ptp.nc.program import ModalState, NcBlock
-
-
-class Limits(NamedTuple):
-    """`call_depth`: subroutines within each other; `repeats`: lines that are jumped back to, and calls, in all."""
-
-    call_depth: int = 20
-    repeats: int = 1_000_000
-
+from cnc_ptp.nc.program import Limits, ModalState, NcBlock
 
 EVALUATE: Final = ("$IF", "$SWITCH", "$ENDFOR")
 """Statements that evaluate what other lines of their structure say."""
