@@ -43,7 +43,10 @@ class BlockResolver:
         self.channel, self.state, self._check_target = channel, state, check_target
 
     def resolve(self, block: NcBlock, calls: tuple[str, ...]) -> CanonicalBlock | None:
-        """None for one without function, motion or stop. `calls`: from where its subroutine was called. Raises ProgramError."""
+        """None for a block without function, motion or stop. Raises ProgramError.
+
+        `calls`: from where its subroutine was called.
+        """
         if block.command is not None:
             return self._of_command(block, calls)
         state = self.state

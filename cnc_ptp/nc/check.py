@@ -6,6 +6,7 @@ from cnc_ptp.nc.awaited import reads_the_run
 from cnc_ptp.nc.block_resolver import CheckTarget
 from cnc_ptp.nc.canonical import CanonicalBlock, HomeAxes, Source
 from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.nc.flow.execution import ENDLESS
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.parser import NO_FILES, parse_all
@@ -41,7 +42,7 @@ def check(
     begin = (0.0,) * len(channel.axes) if start is None else start
     for recovers in (False, True):
         run = CheckRun(program, errors, channel, check_target, check_blocks, recovers=recovers)
-        if run.good(begin):
+        if run.over(begin):
             break
     found = [*errors, *run.recovery.errors]
     run.recovery.mark(found)
@@ -68,8 +69,8 @@ class CheckRun:
         self._check_block = None if check_blocks is None else check_blocks()
         self._homed = False
 
-    def good(self, start: tuple[float, ...]) -> bool:
-        """Whether the program has come to its end, or to a line that reads the run; `recovery` has the errors."""
+    def over(self, start: tuple[float, ...]) -> bool:
+        """Runs it; whether no more is to be found than what `recovery` has then."""
         recovery = self.recovery if self._recovers else None
         blocks = interpret(
             self._program, start, self._channel, check_target=self._check_known, runs=True, recovery=recovery
@@ -83,9 +84,9 @@ class CheckRun:
                     break
             self._check(None)
         except ProgramError as error:
-            if self._recovers:
-                self.recovery.ends_with(error)
-            return False
+            if not self._recovers and error.number not in ENDLESS:
+                return False
+            self.recovery.ends_with(error)
         return True
 
     def _check(self, block: CanonicalBlock | None) -> None:

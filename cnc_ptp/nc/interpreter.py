@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from cnc_ptp.nc import transformations
+from cnc_ptp.nc.awaited import awaits_path
 from cnc_ptp.nc.block_resolver import BlockResolver, CheckTarget
 from cnc_ptp.nc.block_search import BlockSearch
 from cnc_ptp.nc.canonical import BEGIN, BUSY, CanonicalBlock, CircularMove, LinearMove, WaitForPath
@@ -98,15 +99,17 @@ def _programmed(
                 canonical = resolver.resolve(block, execution.calls)
                 motion = None if canonical is None else canonical.motion
                 execution.moved = isinstance(motion, (LinearMove, CircularMove))
+                execution.blocks = 0 if canonical is None else 1
                 if state.following is not None:
                     steps, state.following = state.following, None
-                    yield from resolver.further(block, canonical, steps, execution.calls)
+                    for further in resolver.further(block, canonical, steps, execution.calls):
+                        execution.blocks += 1
+                        yield further
                 elif canonical is not None:
                     yield resolver.reported(canonical)
-                    if values.position:
-                        resolver.take_position(canonical, values.position)
-                if isinstance(motion, LinearMove) and motion.measures:
-                    _take_measured(values, motion, resolver)
+                    if awaits_path(canonical):
+                        execution.forget()
+                        _take_run(canonical, values, resolver)
                 before = None
             if not state.reported:
                 yield resolver.reported(CanonicalBlock(source, (), None, ""))
@@ -130,9 +133,13 @@ def _wait(execution: Execution, *, runs: bool) -> CanonicalBlock:
     return CanonicalBlock(source, (WaitForPath(True),), None, "", calls=execution.calls)
 
 
-def _take_measured(values: Values, motion: LinearMove, resolver: BlockResolver) -> None:
-    """Behind a measuring run, if it was carried out: its results."""
-    touch = values.touch
-    if touch is not None:
+def _take_run(block: CanonicalBlock, values: Values, resolver: BlockResolver) -> None:
+    """What only the run knows, if the block was carried out: where the axes are, the results of a measuring run."""
+    if not values.position:
+        return
+    motion, touch = block.motion, values.touch
+    if not isinstance(motion, LinearMove):
+        resolver.take_position(block, values.position)
+    elif motion.measures and touch is not None:
         programmed = resolver.take_measured(values.position, touch.position)
         values.measured = results(motion, touch, programmed, values.measured)

@@ -362,7 +362,7 @@ CENTRE_OFFSET_RATIO: Final = 0.05
 
 
 class Limits(NamedTuple):
-    """`call_depth`: subroutines within each other; `repeats`: lines that are jumped back to, and calls, in all."""
+    """`call_depth`: subroutines within each other; `repeats`: jumps back and calls in all, blocks of repeated lines."""
 
     call_depth: int = 20
     repeats: int = 1_000_000
@@ -474,7 +474,7 @@ class ModalState:
     spindle: SpindleModes = field(default_factory=SpindleModes)
     slope: str = ""
     coordinates: Coordinates = field(default_factory=Coordinates)
-    frame: Frame | None = None
+    frame: Frame | None = field(default=None, compare=False)
     programmed: tuple[float, ...] = ()
     reported: bool = field(default=False, compare=False)
     drilling: Drilling = NO_DRILLING

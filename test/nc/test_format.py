@@ -122,13 +122,3 @@ def test_the_commands(tmp_path: Path) -> None:
     file.write_text("g1x1q\nm30\n")
     done = run.invoke(main, ["format", str(file)])
     assert done.exit_code == 2 and file.read_text() == "g1x1q\nm30\n"
-    file.write_text("G00 X1\nX[V.A.ACT_POS.Y]\nX5\nM30\n")
-    told = run.invoke(main, ["check", "--canonical", str(file)]).output.splitlines()
-    assert told == [
-        "1:N0 | rapid (1, 0, 0)",
-        "2:N0 | wait for the path",
-        "what follows is known only while the program runs",
-    ]
-    mill = str(HERE.parents[1] / "config" / "mill.yaml")
-    told = run.invoke(main, ["check", "--canonical", "--machine", mill, str(file)]).output.splitlines()
-    assert told[-1] == "what follows is known only while the program runs"

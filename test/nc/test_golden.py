@@ -13,8 +13,6 @@ from cnc_ptp.nc.flow import flow_faults
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.iso import iso_faults
 from cnc_ptp.nc.parser import parse_program
-from cnc_ptp.nc.plain_channel import plain_channel
-from cnc_ptp.nc.program import Limits
 from cnc_ptp.nc.radius import radius_faults
 from cnc_ptp.nc.tools import tool_faults
 
@@ -95,18 +93,6 @@ def test_every_fault_has_a_bad_program():
         expression_faults.ONLY_WHILE_RUNNING.number,
         coordinate_faults.SCALE_ROTARY.number,
     }
-
-
-@pytest.mark.parametrize(
-    "loop", ["$WHILE 1\nX1 X0\n$ENDWHILE", "N1: $GOTO N1", "$FOR P1=0,9,0.001\n$ENDFOR", "$DO\n$ENDDO 1"]
-)
-def test_a_loop_without_an_end_is_refused(loop):
-    last = loop.splitlines()[-1]
-    channel = plain_channel("X")._replace(limits=Limits(repeats=50))
-    with pytest.raises(ProgramError) as caught:
-        list(interpret(parse_program(loop.replace(" X0", "") + "\nM30", "a.nc"), (0.0,), channel))
-    reason = "the program has repeated lines 50 times: does it have a loop without an end?"
-    assert str(caught.value) == f"P-ERR-21578 a.nc line {loop.count(chr(10)) + 1} column 1 '{last}': {reason}"
 
 
 def test_fault_numbers_are_unique():

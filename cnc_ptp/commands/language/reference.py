@@ -37,7 +37,7 @@ RULES = {
     "long lines": "a backslash at the end continues a line",
     "faults": "division by 0, overflow, undefined results and unset variables are errors with line and column",
     "limits": f"P0 to P{LARGEST_PARAMETER}; {MOST_VALUES:,} values; {DEEPEST} levels of brackets; "
-    f"{Limits().call_depth} calls within each other; {Limits().repeats:,} repeated lines",
+    f"{Limits().call_depth} calls within each other; {Limits().repeats:,} repeats",
 }
 ISO_INTRODUCTION = """# Vocabulary iso
 Made from the tables of the language by `make docs`; `cnc_ptp explain --dialect iso G64` prints one row. What CAM
