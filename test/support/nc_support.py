@@ -101,6 +101,9 @@ TOOLS = {
     "turning": ToolTable(TURNING, True),
     "with_t": ToolTable(MILLING, True, True),
     "at_once": ToolTable(MILLING, True, False, True),
+    "none": ToolTable(complete=True),
+    "with_t_none": ToolTable(with_t=True, complete=True),
+    "limits": ToolTable({1: Tool(), 2: Tool()}, complete=True),
 }
 """What a program may name in a comment `; tools milling` in one of its first three lines."""
 
