@@ -355,22 +355,44 @@ class ThreadState(NamedTuple):
 NO_THREAD: Final = ThreadState()
 
 
-class Channel(NamedTuple):
-    """Constants while a program is interpreted: axes, spindles, arc limits (mm, ratio), its vocabulary.
+CENTRE_OFFSET: Final = 2.0
+"""Default of P-CHAN-00059 mittelpkt_diff: 20000 in 0.1 µm; mm."""
+CENTRE_OFFSET_RATIO: Final = 0.05
+"""Default of P-CHAN-00060 mittelpkt_faktor: 50 in 0.1 %; share of the radius."""
 
-    `rotary`: axes in deg; `offsets` of the machine file; `soft_limits`: the lowest and highest position of each axis,
-    empty for none. `path`: how the path goes from block to block at the start; `references`: position of the reference
-    point of each axis (P-AXIS-00152), empty for 0; `radius`: how the radius of tools is compensated; `turning`: facing
-    axes, and what the machine has for turning.
+
+class Limits(NamedTuple):
+    """`call_depth`: subroutines within each other; `repeats`: jumps back and calls in all, blocks of repeated lines."""
+
+    call_depth: int = 20
+    repeats: int = 1_000_000
+
+
+LIMITS: Final = Limits()
+
+
+class Channel(NamedTuple):
+    """All that stays the same while a program is interpreted: axes, spindles, vocabulary, settings of the machine.
+
+    rotary        axes in deg
+    centre_offset, centre_offset_ratio  how far the centre of an arc may be corrected, mm and share of the radius
+                  (P-CHAN-00059, P-CHAN-00060 / 1000); the smaller of both limits counts
+    offsets       zero offsets and clamp positions of the machine file
+    soft_limits   lowest and highest position of each axis, empty for none
+    path          how the path goes from block to block at the start
+    references    position of the reference point of each axis (P-AXIS-00152), empty for 0
+    radius        how the radius of tools is compensated
+    turning       facing axes, and what the machine has for turning
+    limits        of calls and repeated lines
     """
 
     axes: tuple[str, ...]
     axis_index: dict[str, int]
     table: SpindleTable
-    centre_offset: float
-    centre_offset_ratio: float
     vocabulary: Vocabulary
     rotary: frozenset[str] = frozenset()
+    centre_offset: float = CENTRE_OFFSET
+    centre_offset_ratio: float = CENTRE_OFFSET_RATIO
     offsets: OffsetTables = NO_OFFSET_TABLES
     soft_limits: tuple[tuple[float, float], ...] = ()
     tools: ToolTable = NO_TOOLS
@@ -378,6 +400,7 @@ class Channel(NamedTuple):
     references: tuple[float, ...] = ()
     radius: RadiusSettings = DEFAULT_SETTINGS
     turning: TurningAxes = NO_TURNING_AXES
+    limits: Limits = LIMITS
 
     @property
     def main(self) -> tuple[int, int, int]:
@@ -451,7 +474,7 @@ class ModalState:
     spindle: SpindleModes = field(default_factory=SpindleModes)
     slope: str = ""
     coordinates: Coordinates = field(default_factory=Coordinates)
-    frame: Frame | None = None
+    frame: Frame | None = field(default=None, compare=False)
     programmed: tuple[float, ...] = ()
     reported: bool = field(default=False, compare=False)
     drilling: Drilling = NO_DRILLING

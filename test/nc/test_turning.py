@@ -18,7 +18,7 @@ PLANE = "@DBEGIN=40 @ZBEGIN=0 @DEND=10 @ZEND=0"
 
 def turned(text: str, turning_axes: TurningAxes = FACING["X"], **options) -> list[str]:
     files = called_programs(text, [str(HERE / "library")])
-    return lines(BEFORE + text, turning_axes=turning_axes, files=files, **options)
+    return lines(BEFORE + text, turning=turning_axes, files=files, **options)
 
 
 def cycle(begin: str, name: str, parameters: str) -> list[str]:
@@ -62,7 +62,7 @@ def test_offsets_are_radii() -> None:
 
 
 def speeds(text: str, spindles: SpindleTable) -> list[object]:
-    blocks = run(BEFORE + text, turning_axes=FACING["X"], spindles=spindles)
+    blocks = run(BEFORE + text, turning=FACING["X"], spindles=spindles)
     return [function for block in blocks for function in block.functions]
 
 
