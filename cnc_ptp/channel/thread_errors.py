@@ -140,9 +140,7 @@ class ThreadErrors:
         per_degree = place.lead / TURN
         set_pitch, actual_pitch = self._last_turn.growth(angle, set_phase * per_degree, actual_phase * per_degree)
         axis_number, spindle_number = self._numbers[self._nodes[place.axis]], self._numbers[place.spindle]
-        return ThreadError(
-            axis_number, spindle_number, place.lead, set_pitch, actual_pitch, set_phase, actual_phase
-        )
+        return ThreadError(axis_number, spindle_number, place.lead, set_pitch, actual_pitch, set_phase, actual_phase)
 
     def _actual_position(self, axis: int, cycle: int, feedback: Mapping[str, CycleBlock]) -> float:
         """mm; NaN of an axis that has not reported."""

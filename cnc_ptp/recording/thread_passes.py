@@ -76,7 +76,8 @@ def thread_passes(recorded: Recorded, machine: MachineParameters | None) -> list
     """
     if machine is None:
         return []
-    return [found for channel, rows in recorded.threads.items() for found in _of_channel(recorded, machine, channel, rows)]
+    threads = recorded.threads.items()
+    return [found for channel, rows in threads for found in _of_channel(recorded, machine, channel, rows)]
 
 
 def _of_channel(recorded: Recorded, machine: MachineParameters, channel: str, rows: Records) -> Iterator[ThreadPass]:

@@ -118,8 +118,8 @@ def test_a_dip_of_the_speed_is_in_the_table(tmp_path):
         tmp_path / "run.mcap", LATHE, "%T\nG18 G90 M03 S400\nG00 X36 Z105\nG33 Z75 K1.5\nM30\n", scenario, 6000
     )
     [row] = thread_table(report_page(recorded))
-    # 6000 deg/s² within one block of 10 ms before the path knows: 2.2 µm (docs/threads.md)
-    assert float(row["pitch error set µm"]) == pytest.approx(2.2, abs=0.15)
+    # 6000 deg/s² within one block of 10 ms before the path knows: 2.0 µm (docs/threads.md)
+    assert float(row["pitch error set µm"]) == pytest.approx(2.02, abs=0.05)
     assert float(row["rpm"]) == pytest.approx(360.0, abs=0.5)
 
 
