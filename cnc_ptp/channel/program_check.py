@@ -58,6 +58,7 @@ from cnc_ptp.parameters import (
     ChannelParameters,
     ChannelSpindle,
     MachineParameters,
+    OffsetTables,
     SpindleParameters,
     catalogue,
 )
@@ -155,6 +156,7 @@ class ProgramCheck:
         self._references = tuple([axis.homing.reference_position for axis in self._axes] + [0.0] * spindles_on_path)
         limits = [(axis.soft_limit_negative, axis.soft_limit_positive) for axis in self._axes]
         self._soft_limits = tuple(limits + [(-inf, inf)] * spindles_on_path)
+        turning = turning_axes(channel, self._axes)
         self.nc = Channel(
             self._axis_names,
             indices,
@@ -163,13 +165,13 @@ class ProgramCheck:
             ratio,
             self.vocabulary,
             self._rotary,
-            channel.offsets,
+            own_offsets(channel, turning),
             self._soft_limits,
             channel.tool_table,
             path_defaults(channel),
             self._references,
             radius_settings(channel),
-            turning=turning_axes(channel, self._axes),
+            turning=turning,
         )
         """The channel as the interpreter knows it."""
         self._threads = thread_settings(channel, self._axes, 0.0)
@@ -213,7 +215,7 @@ class ProgramCheck:
             references=self._references,
             files=files,
             cycles=self.cycles,
-            offsets=self._channel.offsets,
+            offsets=self.nc.offsets,
             soft_limits=self._soft_limits,
             turning_axes=self.nc.turning,
             limits=self._limits,
@@ -387,7 +389,7 @@ class ProgramCheck:
             centre_offset=self._channel.circle_center_tolerance,
             centre_offset_ratio=self._channel.circle_center_ratio,
             rotary=self._rotary,
-            offsets=self._channel.offsets,
+            offsets=self.nc.offsets,
             soft_limits=self._soft_limits,
             tools=self._channel.tool_table,
             radius=self.nc.radius,
@@ -531,7 +533,17 @@ def turning_axes(channel: ChannelParameters, axes: Sequence[AxisParameters]) -> 
         for index, axis in enumerate(axes)
         if axis.facing
     ]
-    return TurningAxes(tuple(facing), channel.shows_diameter, channel.cutting_speed_in_feet)
+    shown, feet = channel.shows_diameter, channel.cutting_speed_in_feet
+    return TurningAxes(tuple(facing), shown, feet, channel.offsets_in_diameters)
+
+
+def own_offsets(channel: ChannelParameters, turning: TurningAxes) -> OffsetTables:
+    """The offsets of the machine file, with radii in zero offsets of a facing axis."""
+
+    def radii(values: Sequence[float]) -> tuple[float, ...]:
+        return tuple([value * turning.offset_factor(place) for place, value in enumerate(values)])
+
+    return channel.offsets._replace(zero={index: radii(values) for index, values in channel.offsets.zero.items()})
 
 
 def spindle_table(channel: ChannelParameters, spindles: Mapping[str, SpindleParameters]) -> SpindleTable:

@@ -63,7 +63,6 @@ class SmoothFading:
             (6.0 * a3 + s * (24.0 * a4 + s * 60.0 * a5)) / (h * h * h),
         )
 
-
     @property
     def largest_jerk(self) -> float:
         """deg/s³; it is a parabola over the time, so that is at an end or at its vertex."""
