@@ -93,7 +93,8 @@ class ChannelUnit(Unit):
         on_path = [axes[node] for node in nodes]
         self._cutting_speed, feed_per_turn = functions.cutting_speed, FeedPerTurn(functions.spindles)
         self._motion = PathMotion(parameters, on_path, cycle_time, self._path_spindle.limits, feed_per_turn.turns)
-        self._thread_errors = ThreadErrors(nodes, self._motion.delay)
+        logical = {**{n: axis.number for n, axis in axes.items()}, **{n: each.number for n, each in spindles.items()}}
+        self._thread_errors = ThreadErrors(nodes, logical, self._motion.delay)
         self._axes = PathAxes(nodes, axes, self._motion)
         self._handshake_timeout = handshake_timeout
         self._handshake_cycles = round(handshake_timeout / cycle_time)

@@ -60,6 +60,7 @@ from cnc_ptp.parameters import (
     ChannelParameters,
     ChannelSpindle,
     MachineParameters,
+    OffsetTables,
     SpindleParameters,
     catalogue,
 )
@@ -151,17 +152,18 @@ class ProgramCheck:
         self.vocabulary = VOCABULARIES[channel.dialect]
         """That of the machine file."""
         self.cycles = channel.cycles
+        turning = turning_axes(channel, self._axes)
         rotary = [axis.name for axis in channel.axes if axes[axis.node].rotary]
         self.nc = plain_channel(self._axis_names, self._spindles, self.vocabulary, rotary)._replace(
             centre_offset=channel.circle_center_tolerance,
             centre_offset_ratio=channel.circle_center_ratio,
-            offsets=channel.offsets,
+            offsets=own_offsets(channel, turning),
             soft_limits=tuple(limits + [(-inf, inf)] * spindles_on_path),
             tools=channel.tool_table,
             path=path_defaults(channel),
             references=tuple(references + [0.0] * spindles_on_path),
             radius=radius_settings(channel),
-            turning=turning_axes(channel, self._axes),
+            turning=turning,
             limits=Limits(channel.call_depth, channel.repeats),
         )
         """The channel as the interpreter knows it."""
@@ -500,7 +502,17 @@ def turning_axes(channel: ChannelParameters, axes: Sequence[AxisParameters]) -> 
         for index, axis in enumerate(axes)
         if axis.facing
     ]
-    return TurningAxes(tuple(facing), channel.shows_diameter, channel.cutting_speed_in_feet)
+    shown, feet = channel.shows_diameter, channel.cutting_speed_in_feet
+    return TurningAxes(tuple(facing), shown, feet, channel.offsets_in_diameters)
+
+
+def own_offsets(channel: ChannelParameters, turning: TurningAxes) -> OffsetTables:
+    """The offsets of the machine file, with radii in zero offsets of a facing axis."""
+
+    def radii(values: Sequence[float]) -> tuple[float, ...]:
+        return tuple([value * turning.offset_factor(place) for place, value in enumerate(values)])
+
+    return channel.offsets._replace(zero={index: radii(values) for index, values in channel.offsets.zero.items()})
 
 
 def spindle_table(channel: ChannelParameters, spindles: Mapping[str, SpindleParameters]) -> SpindleTable:

@@ -276,13 +276,19 @@ class FacingAxis(NamedTuple):
 class TurningAxes(NamedTuple):
     """Facing axes of a channel, and its settings of turning.
 
-    shown   G51 shows the facing axis in diameters (P-CHAN-00256)
-    feet    S of G96 is in ft/min with G70 (P-CHAN-00360)
+    shown    G51 shows the facing axis in diameters (P-CHAN-00256)
+    feet     S of G96 is in ft/min with G70 (P-CHAN-00360)
+    doubled  its zero offsets and G92 are given as diameters (P-CHAN-00091); inside they are radii
     """
 
     facing: tuple[FacingAxis, ...] = ()
     shown: bool = False
     feet: bool = False
+    doubled: bool = False
+
+    def offset_factor(self, place: int) -> float:
+        """That makes the offset of an axis of one as it is given."""
+        return 0.5 if self.doubled and any(axis.place == place for axis in self.facing) else 1.0
 
 
 NO_TURNING_AXES: Final = TurningAxes()

@@ -116,7 +116,8 @@ def reference_offset(channel: Channel, state: ModalState, block: NcBlock, code: 
     """G92 X10: an offset beside the zero offset; G90 sets it, G91 adds to it."""
     own = state.coordinates.own
     values = list(own.added or (0.0,) * len(channel.axes))
-    for index, value in axis_values(channel, state, block, code):
+    for index, given in axis_values(channel, state, block, code):
+        value = given * channel.turning.offset_factor(index)
         values[index] = value if state.absolute else values[index] + value
     state.coordinates.own = own._replace(added=tuple(values))
     refresh(channel, state)

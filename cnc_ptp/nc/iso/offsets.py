@@ -50,7 +50,8 @@ def set_offset(channel: Channel, state: ModalState, block: NcBlock, code: GCode)
     values = list(offset_values(channel, changes, index))
     active = own.zero or (0.0,) * len(channel.axes)
     for axis, value in axis_values(channel, state, block, code):
-        values[axis] = value if kind == 2.0 else active[axis] + state.programmed[axis] - value
+        given = value * channel.turning.offset_factor(axis)
+        values[axis] = given if kind == 2.0 else active[axis] + state.programmed[axis] - value
     state.coordinates.changes = changes._replace(values={**changes.values, index: tuple(values)})
     if index == own.zero_index:
         select_offset(channel, state, index)

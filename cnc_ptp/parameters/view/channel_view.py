@@ -124,6 +124,8 @@ class ChannelParameters:
     """… and its way, mm, signed."""
     signal_required: Annotated[bool, ids.MEAS_ERROR_NO_SIGNAL] = True
     """A measuring run without a signal of the probe is an error."""
+    offsets_in_diameters: Annotated[bool, ids.VERSCH_IM_DURCHM] = False
+    """Zero offsets and G92 of the facing axis are diameters."""
     shows_diameter: Annotated[bool, ids.DISPLAY_DIAMETER_POS] = False
     """With G51 the channel shows the facing axis in diameters."""
     cutting_speed_in_feet: Annotated[bool, ids.ENABLE_UNIT_FEET_CUT_SPEED] = False
