@@ -11,7 +11,8 @@ from cnc_ptp.nc.coordinates.codes import LAST_OFFSET, offset_values
 from cnc_ptp.nc.coordinates.coordinates import NO_CHANGES, Coordinates
 from cnc_ptp.nc.coordinates.frame import IDENTITY, Frame, main_axes, matrix
 from cnc_ptp.nc.coordinates.report import offset_report
-from cnc_ptp.nc.program import Channel, ModalState
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Channel
 from cnc_ptp.parameters.list_units import LARGEST_POSITION
 from cnc_ptp.protocol.blocks import ChannelOffsets
 

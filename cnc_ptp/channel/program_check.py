@@ -38,19 +38,10 @@ from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.measuring import measures
+from cnc_ptp.nc.modal_state import FacingAxis, ModalState, Pair, Pairs
 from cnc_ptp.nc.parser import NO_FILES, parse_program
 from cnc_ptp.nc.plain_channel import plain_channel
-from cnc_ptp.nc.program import (
-    FacingAxis,
-    Limits,
-    ModalState,
-    Pair,
-    Pairs,
-    Spindle,
-    SpindleTable,
-    TurningAxes,
-    Vocabulary,
-)
+from cnc_ptp.nc.program import Limits, Spindle, SpindleTable, TurningAxes, Vocabulary
 from cnc_ptp.nc.program_text import ProgramText
 from cnc_ptp.nc.radius.radius_state import radius_settings
 from cnc_ptp.nc.streamed_program import stream_program

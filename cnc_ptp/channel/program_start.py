@@ -30,7 +30,7 @@ from cnc_ptp.nc.canonical_text import format_function
 from cnc_ptp.nc.flow.lines import Line
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.measuring import measures
-from cnc_ptp.nc.program import ModalState
+from cnc_ptp.nc.modal_state import ModalState
 from cnc_ptp.protocol.commands import BAD_ARGUMENT
 
 NOT_FOUND: Final = 22040

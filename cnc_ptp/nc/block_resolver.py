@@ -25,7 +25,8 @@ from cnc_ptp.nc.feeds import timed
 from cnc_ptp.nc.functions import block_functions
 from cnc_ptp.nc.machine_points import machine_points
 from cnc_ptp.nc.measuring import placed
-from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock, Step
+from cnc_ptp.nc.modal_state import ModalState, Step
+from cnc_ptp.nc.program import Channel, GCode, NcBlock
 from cnc_ptp.nc.spindle_links import end_of_links
 from cnc_ptp.nc.thread_cutting import end_thread, note_functions, note_motion, take_offset, with_speed
 from cnc_ptp.nc.tools.compensation import compensating_move, tool_words

@@ -15,7 +15,8 @@ from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.execution import COMPUTES, FOUND, PAUSE, Execution, with_calls
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.measuring import results
-from cnc_ptp.nc.program import Channel, ModalState
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Channel
 from cnc_ptp.nc.radius.compensation import RadiusCompensation
 from cnc_ptp.nc.recovery import Recovery
 from cnc_ptp.nc.thread_cutting import end_thread

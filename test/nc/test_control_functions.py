@@ -8,9 +8,9 @@ from nc_support import lines, run
 
 from cnc_ptp.nc.canonical import AxisFeedforward, CompensationSwitch, LinearMove, SpindleFeedforward
 from cnc_ptp.nc.interpreter import interpret
+from cnc_ptp.nc.modal_state import ModalState
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.plain_channel import plain_channel
-from cnc_ptp.nc.program import ModalState
 
 AXES = ("X", "Y", "Z")
 percents = st.integers(0, 100_000).map(lambda value: value / 1000.0)

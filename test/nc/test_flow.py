@@ -10,9 +10,9 @@ from cnc_ptp.nc.check import check
 from cnc_ptp.nc.expressions.values import Values
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.interpreter import interpret
+from cnc_ptp.nc.modal_state import ModalState
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.plain_channel import plain_channel
-from cnc_ptp.nc.program import ModalState
 from cnc_ptp.nc.program_text import ProgramText
 
 AXES = ("X", "Y", "Z")

@@ -18,9 +18,9 @@ from cnc_ptp.nc.flow.lines import Line
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.iso.lines import iso_line
 from cnc_ptp.nc.iso.vocabulary import ISO
+from cnc_ptp.nc.modal_state import ModalState
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.plain_channel import plain_channel
-from cnc_ptp.nc.program import ModalState
 from cnc_ptp.nc.vocabulary import TWINCAT
 from cnc_ptp.parameters import OffsetTables
 

@@ -9,9 +9,10 @@ from cnc_ptp.nc.canonical_text import format_block
 from cnc_ptp.nc.check import check
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.interpreter import interpret
+from cnc_ptp.nc.modal_state import ModalState
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.plain_channel import plain_channel
-from cnc_ptp.nc.program import Limits, ModalState
+from cnc_ptp.nc.program import Limits
 from cnc_ptp.nc.vocabulary import TWINCAT
 
 AXES = ("X", "Y", "Z")

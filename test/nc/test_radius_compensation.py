@@ -9,9 +9,9 @@ from cnc_ptp.nc.block_search import BlockSearch, StartPoint
 from cnc_ptp.nc.canonical import BEGIN, BUSY, CircularMove, LanguageWarning, LinearMove, Source
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.interpreter import interpret
+from cnc_ptp.nc.modal_state import ModalState
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.plain_channel import plain_channel
-from cnc_ptp.nc.program import ModalState
 from cnc_ptp.nc.radius.radius_state import RadiusSettings
 from cnc_ptp.parameters import Tool, ToolTable
 

@@ -14,9 +14,10 @@ from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.iso.vocabulary import ISO
 from cnc_ptp.nc.measuring import Touch
+from cnc_ptp.nc.modal_state import ModalState
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.plain_channel import plain_channel
-from cnc_ptp.nc.program import Limits, ModalState
+from cnc_ptp.nc.program import Limits
 
 FEW = plain_channel("XYZ")._replace(limits=Limits(repeats=50))
 ENDLESS = "a loop without an end: the program comes back with the same positions and values each time"

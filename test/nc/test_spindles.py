@@ -13,9 +13,10 @@ from cnc_ptp.nc import gears
 from cnc_ptp.nc.canonical import GearChange, SpindleFunction
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.interpreter import interpret
+from cnc_ptp.nc.modal_state import ModalState, Pair
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.plain_channel import plain_channel
-from cnc_ptp.nc.program import ModalState, Pair, Spindle, SpindleTable
+from cnc_ptp.nc.program import Spindle, SpindleTable
 
 
 @pytest.mark.parametrize("position", ["S.POS180", "S.POS 180", "S.POS=180", "S. POS = 180.0", "s.pos=+180"])

@@ -13,9 +13,10 @@ from nc_support import MILLING, TOOLS, run
 from cnc_ptp.nc.canonical import Source
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.interpreter import interpret
+from cnc_ptp.nc.modal_state import ModalState
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.plain_channel import plain_channel
-from cnc_ptp.nc.program import Channel, ModalState, SpindleTable
+from cnc_ptp.nc.program import Channel, SpindleTable
 from cnc_ptp.nc.tools.compensation import cancel_length, select_length
 from cnc_ptp.nc.vocabulary import TWINCAT
 from cnc_ptp.parameters import OffsetTables, Tool, ToolTable

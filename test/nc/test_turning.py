@@ -9,7 +9,8 @@ from nc_support import FACING, GEARS, HERE, lines, run, three_spindles
 
 from cnc_ptp.machine.program_files import called_programs
 from cnc_ptp.nc.canonical import CuttingSpeed, GearChange, SpindleFunction
-from cnc_ptp.nc.program import FacingAxis, Spindle, SpindleTable, TurningAxes
+from cnc_ptp.nc.modal_state import FacingAxis
+from cnc_ptp.nc.program import Spindle, SpindleTable, TurningAxes
 
 BEFORE = "G18 G51 F600\n"
 CONE = "@DBEGIN=20 @ZBEGIN=0 @DEND=30 @ZEND=-20"

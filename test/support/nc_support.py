@@ -8,18 +8,10 @@ from cnc_ptp.nc.canonical import CanonicalBlock
 from cnc_ptp.nc.canonical_text import format_block
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.iso.vocabulary import ISO
+from cnc_ptp.nc.modal_state import FacingAxis, Pair
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.plain_channel import plain_channel
-from cnc_ptp.nc.program import (
-    NO_TURNING_AXES,
-    Channel,
-    FacingAxis,
-    Pair,
-    Spindle,
-    SpindleTable,
-    TurningAxes,
-    Vocabulary,
-)
+from cnc_ptp.nc.program import NO_TURNING_AXES, Channel, Spindle, SpindleTable, TurningAxes, Vocabulary
 from cnc_ptp.nc.vocabularies import VOCABULARIES
 from cnc_ptp.parameters import NO_TOOLS, Tool, ToolTable
 

@@ -27,9 +27,9 @@ from cnc_ptp.nc.flow.calls import arguments_read
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.flow.structures import Place
 from cnc_ptp.nc.interpreter import interpret
+from cnc_ptp.nc.modal_state import ModalState
 from cnc_ptp.nc.parser import parse_all, parse_program
 from cnc_ptp.nc.plain_channel import plain_channel
-from cnc_ptp.nc.program import ModalState
 from cnc_ptp.nc.program_text import ProgramFile, ProgramText
 from cnc_ptp.nc.vocabularies import VOCABULARIES
 from cnc_ptp.parameters import MachineParameters, read_machine

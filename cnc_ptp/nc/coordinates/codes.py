@@ -7,7 +7,8 @@ from cnc_ptp.nc.canonical import Function, number
 from cnc_ptp.nc.coordinates import coordinate_faults as faults
 from cnc_ptp.nc.coordinates.coordinates import INCH, NO_CHANGES, Coordinates, OffsetChanges, Offsets
 from cnc_ptp.nc.coordinates.placement import plane_axes, refresh
-from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Channel, GCode, NcBlock
 from cnc_ptp.nc.radius.radius_state import NOT_COMPENSATED
 
 LAST_OFFSET = 96

@@ -19,7 +19,8 @@ from cnc_ptp.nc.flow.lines import Call, Flow, Line
 from cnc_ptp.nc.flow.repetition import Repetition
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.flow.structures import Place, Structure
-from cnc_ptp.nc.program import Limits, ModalState, NcBlock
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Limits, NcBlock
 
 EVALUATE: Final = ("$IF", "$SWITCH", "$ENDFOR")
 """Statements that evaluate what other lines of their structure say."""

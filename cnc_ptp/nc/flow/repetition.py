@@ -14,7 +14,8 @@ from typing import Final
 from cnc_ptp.nc.canonical import Source
 from cnc_ptp.nc.expressions.values import Values
 from cnc_ptp.nc.flow import flow_faults
-from cnc_ptp.nc.program import Limits, ModalState
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Limits
 
 LINES_FOR_A_REPEAT: Final = 10
 """Repeated lines that may be executed for each time that lines may be repeated."""

@@ -7,7 +7,8 @@ from cnc_ptp.nc.contour import Contour, Smoothing, Transition
 from cnc_ptp.nc.coordinates.codes import LAST_OFFSET, axis_values, offset_values, select_offset
 from cnc_ptp.nc.coordinates.placement import refresh
 from cnc_ptp.nc.iso import iso_faults as faults
-from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Channel, GCode, NcBlock
 from cnc_ptp.nc.radius.changes import require_off
 
 G59: Final = 6

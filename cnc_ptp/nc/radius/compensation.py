@@ -37,7 +37,8 @@ from cnc_ptp.nc.coordinates.placement import PLANE_AXES
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.feeds import INVERSE, TIME
 from cnc_ptp.nc.measuring import measures
-from cnc_ptp.nc.program import Channel, ModalState
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Channel
 from cnc_ptp.nc.radius import radius_faults as faults
 from cnc_ptp.nc.radius.contour_path import ArcTooSmall, ContourPath, Element, TooNarrow
 from cnc_ptp.nc.radius.entries import Entry

@@ -3,7 +3,8 @@
 from collections.abc import Callable
 
 from cnc_ptp.nc.functions import MAX_TOOL, number_function
-from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Channel, GCode, NcBlock
 from cnc_ptp.nc.radius.changes import require_same_radius
 from cnc_ptp.nc.radius.radius_state import LEFT, RIGHT
 from cnc_ptp.nc.tools.compensation import data_of, unknown_data

@@ -9,7 +9,8 @@ from cnc_ptp.nc.canonical import LinearMove, Source, number
 from cnc_ptp.nc.coordinates.placement import refresh
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.functions import MAX_TOOL, number_function
-from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Channel, GCode, NcBlock
 from cnc_ptp.nc.radius.changes import require_same_plane, require_same_radius
 from cnc_ptp.nc.tools import tool_faults as faults
 from cnc_ptp.nc.tools.tool_state import NO_TOOL
