@@ -12,6 +12,7 @@ from pathlib import Path
 
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.parser import parse_text
+from cnc_ptp.nc.plain_channel import plain_channel
 from cnc_ptp.nc.program_text import ProgramFile
 
 KIB = 1024.0
@@ -38,7 +39,7 @@ def main(blocks: int) -> None:
         with path.open("rb") as stream:
             program, errors = parse_text(ProgramFile(stream), path.name)
             assert not errors
-            count = sum(1 for _ in interpret(program, (0.5, 0.0, 0.0), ("X", "Y", "Z")))
+            count = sum(1 for _ in interpret(program, (0.5, 0.0, 0.0), plain_channel("XYZ")))
         assert count == blocks + 1
         print(largest(), 1e6 * (time.perf_counter() - begin) / blocks)
 

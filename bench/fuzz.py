@@ -20,11 +20,10 @@ from cnc_ptp.channel.program_check import ProgramCheck
 from cnc_ptp.nc.canonical_text import format_block
 from cnc_ptp.nc.coordinates.codes import initial_state
 from cnc_ptp.nc.faults import ProgramError
-from cnc_ptp.nc.flow.execution import Limits
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.parser import parse_all
-from cnc_ptp.nc.program import Channel
-from cnc_ptp.nc.spindles import spindle_table
+from cnc_ptp.nc.plain_channel import plain_channel
+from cnc_ptp.nc.program import Limits
 from cnc_ptp.nc.vocabularies import VOCABULARIES
 from cnc_ptp.parameters import NO_OFFSET_TABLES, NO_TOOLS, OffsetTables, Tool, ToolTable, read_machine
 
@@ -175,13 +174,11 @@ def survives(text: str, dialect: str, draw: random.Random) -> None:
     files = {"a.nc": "X[@P1]\nM29", "g81.nc": "G00 Z[@P2]\nG01 Z[@P1]\nM29"}
     program, errors = parse_all(text, "fuzz.nc", files=files, vocabulary=vocabulary)
     tools, offsets, clamp = draw.choice(TOOLS), draw.choice(OFFSETS), draw.randrange(2)
-    channel = Channel(
-        AXES, dict(zip(AXES, range(3), strict=True)), spindle_table(SPINDLES), 0.0, 0.0, vocabulary, offsets=offsets
-    )
+    settings: dict[str, Any] = {"tools": tools, "offsets": offsets, "limits": LIMITS}
+    channel = plain_channel(AXES, SPINDLES, vocabulary)._replace(**settings)
     state = initial_state(channel, clamp_index=clamp)
-    options: dict[str, Any] = {"state": state, "tools": tools, "offsets": offsets, "limits": LIMITS}
     try:
-        for block in interpret(program, (0.0, 0.0, 0.0), AXES, SPINDLES, **options):
+        for block in interpret(program, (0.0, 0.0, 0.0), channel, state=state):
             format_block(block)
     except ProgramError as error:
         errors.append(error)

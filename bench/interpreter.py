@@ -13,6 +13,7 @@ from bench.figures import Effort, Figure, ShowProgress, medians_of, stopwatch
 from bench.jobs import ROOT
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.parser import parse_program
+from cnc_ptp.nc.plain_channel import plain_channel
 
 BLOCKS = 100_000
 MANY_BLOCKS = 10_000_000
@@ -42,7 +43,7 @@ def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
 
     def resolve() -> float:
         with stopwatch() as watch:
-            for _ in interpret(program, (0.0, 0.0, 0.0), ("X", "Y", "Z")):
+            for _ in interpret(program, (0.0, 0.0, 0.0), plain_channel("XYZ")):
                 pass
         return watch.wall / blocks
 
@@ -80,6 +81,6 @@ def assignments() -> float:
     """P2 = P2 + P1 * 2 for a counter; assignments per second."""
     program = parse_program(f"P2 = 0\n$FOR P1 = 1, {BLOCKS}, 1\nP2 = P2 + P1 * 2\n$ENDFOR\nM30", "loop.nc")
     with stopwatch() as watch:
-        for _ in interpret(program, (0.0,), ("X",)):
+        for _ in interpret(program, (0.0,), plain_channel("X")):
             pass
     return BLOCKS / watch.wall

@@ -27,7 +27,7 @@ SMALLEST = 0.5
 
 def draw(figure: FigureScenario, run: FigureRun) -> Figure:
     """The picture of a figure with a program that cuts threads. Raises FigureError."""
-    passes = thread_passes(recorded(figure, run))
+    passes = thread_passes(recorded(figure, run), run.machine)
     if not passes:
         raise FigureError(figure.path, "its program cuts no thread")
     sheet = Sheet(figure, SURFACE + ERROR + 2.0 * HEADER + GAP)

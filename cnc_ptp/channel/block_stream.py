@@ -6,10 +6,10 @@ from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Final
 
+from cnc_ptp.nc.awaited import awaits_path
 from cnc_ptp.nc.canonical import BUSY, CanonicalBlock
 from cnc_ptp.nc.expressions.values import Values
 from cnc_ptp.nc.faults import ProgramError
-from cnc_ptp.nc.interpreter import awaits_path
 from cnc_ptp.nc.measuring import Touch
 
 BUFFER: Final = 1000

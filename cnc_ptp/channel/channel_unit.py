@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import count as numbers
-from typing import ClassVar, NoReturn
+from typing import Any, ClassVar, NoReturn
 
 from cnc_ptp.channel.axis_homing import AxisHoming
 from cnc_ptp.channel.block_stream import BlockStream
@@ -21,7 +21,7 @@ from cnc_ptp.channel.path_axes import NOT_AT_END, PathAxes
 from cnc_ptp.channel.path_spindle import PathSpindle
 from cnc_ptp.channel.program_check import PreparedProgram, ProgramCheck, ProgramState
 from cnc_ptp.channel.program_sequence import NO_SOURCE, OFF_PATH, Phase, ProgramSequence
-from cnc_ptp.channel.program_start import ProgramStart, start_point
+from cnc_ptp.channel.program_start import NOTHING_STARTED, ProgramStart, start_point
 from cnc_ptp.channel.program_times import NO_TIMES, ProgramProgress, block_times
 from cnc_ptp.channel.program_view import ProgramView
 from cnc_ptp.channel.supervision import Finding, Supervision
@@ -33,8 +33,9 @@ from cnc_ptp.errors import CncError, Value
 from cnc_ptp.nc.expressions.values import Variable
 from cnc_ptp.nc.faults import ProgramError, line_of_program
 from cnc_ptp.nc.flow.sections import Program
+from cnc_ptp.nc.modal_state import Pairs
 from cnc_ptp.nc.parser import NO_FILES, parse_program
-from cnc_ptp.nc.program import Pairs, Vocabulary
+from cnc_ptp.nc.program import Vocabulary
 from cnc_ptp.nc.vocabularies import VOCABULARIES
 from cnc_ptp.nc.vocabulary import MAX_SKIP_LEVEL
 from cnc_ptp.parameters import AxisParameters, ChannelParameters, SpindleParameters
@@ -61,6 +62,8 @@ NO_TEXT = 22009
 NOTHING_AWAITS_EVENT = 22020
 FEED_WITHHELD = 22026
 THREAD_BROKEN = 22087
+EFFECTS = {"start": NOTHING_STARTED, "mdi": "nothing was executed"}
+"""What the refusal of a command means, of others that nothing was changed."""
 
 C = ChannelStateCode
 
@@ -93,7 +96,8 @@ class ChannelUnit(Unit):
         on_path = [axes[node] for node in nodes]
         self._cutting_speed, feed_per_turn = functions.cutting_speed, FeedPerTurn(functions.spindles)
         self._motion = PathMotion(parameters, on_path, cycle_time, self._path_spindle.limits, feed_per_turn.turns)
-        self._thread_errors = ThreadErrors(nodes, self._motion.delay)
+        logical = {**{n: axis.number for n, axis in axes.items()}, **{n: each.number for n, each in spindles.items()}}
+        self._thread_errors = ThreadErrors(nodes, logical, self._motion.delay)
         self._axes = PathAxes(nodes, axes, self._motion)
         self._handshake_timeout = handshake_timeout
         self._handshake_cycles = round(handshake_timeout / cycle_time)
@@ -157,6 +161,14 @@ class ChannelUnit(Unit):
         self._prepared = PreparedProgram(text, dict(files), parsed, start, before, state, known, times, skip)
 
     # commands
+
+    def _dispatch(self, command: str, arguments: Mapping[str, Any], cycle: int) -> None:
+        """An error that does not say what happens now, as those of programs, says it here."""
+        try:
+            super()._dispatch(command, arguments, cycle)
+        except CncError as error:
+            error.effect = error.effect or EFFECTS.get(command, "nothing was changed")
+            raise
 
     def do_load(
         self,

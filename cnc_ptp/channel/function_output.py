@@ -41,7 +41,6 @@ from cnc_ptp.parameters import ChannelParameters, SpindleParameters, Synchronisa
 from cnc_ptp.protocol.blocks import Command, HandshakeRequest
 
 SPEED_WITHOUT_EFFECT = 22023
-NO_TOOL_RECORD = 22027
 
 
 class FunctionOutput:
@@ -216,18 +215,11 @@ class FunctionOutput:
         synchronisation = self._synchronisation(function)
         if function.letter == "D":
             outgoing.commands += self.spindles.tool_limits(function.number)
-            self._check_tool(function.number, source, outgoing)
         if synchronisation & OUTPUT:
             node = self.spindles[function.spindle].node if function.spindle else ""
             waits = bool(synchronisation & WAITING)
             request = self._request(source, function.letter, node, function.number, waits=waits, value=function.value)
             self._ask(request, synchronisation, NOTHING, outgoing)
-
-    def _check_tool(self, tool: int, source: Source, outgoing: Outgoing) -> None:
-        if tool and tool not in self._channel.tool_records:
-            known = ", ".join(f"D{number}" for number in sorted(self._channel.tool_records)) or "none"
-            text = f"D{tool} in line {source.line} has no record wz[{tool}] in the machine file"
-            outgoing.notes.append((NO_TOOL_RECORD, f"{text}, no data of the tool apply. Known: {known}"))
 
     def _spindle_function(self, function: SpindleFunction, source: Source, outgoing: Outgoing) -> None:
         spindle, synchronisation = self.spindles[function.spindle], self._synchronisation(function)

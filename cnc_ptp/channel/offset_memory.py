@@ -11,7 +11,8 @@ from cnc_ptp.nc.coordinates.codes import LAST_OFFSET, offset_values
 from cnc_ptp.nc.coordinates.coordinates import NO_CHANGES, Coordinates
 from cnc_ptp.nc.coordinates.frame import IDENTITY, Frame, main_axes, matrix
 from cnc_ptp.nc.coordinates.report import offset_report
-from cnc_ptp.nc.program import Channel, ModalState
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Channel
 from cnc_ptp.parameters.list_units import LARGEST_POSITION
 from cnc_ptp.protocol.blocks import ChannelOffsets
 
@@ -39,7 +40,10 @@ class OffsetMemory:
     # commands
 
     def set(self, command: str, index: int, values: Mapping[int, float]) -> None:
-        """Changes the values of a zero offset for some axes, by their places. Raises CncError 22030, 22032."""
+        """Changes the values of a zero offset for some axes, by their places. Raises CncError 22030, 22032.
+
+        Those of a facing axis are diameters with P-CHAN-00091.
+        """
         self.require_index(command, index)
         table = list(offset_values(self._channel, self.changes, index))
         for place, value in values.items():
@@ -49,7 +53,7 @@ class OffsetMemory:
                 limits = f"-{LARGEST_POSITION} ... {LARGEST_POSITION} {unit}"
                 reason = f"axis {axis}: {value:g} {unit} is not within {limits}"
                 raise self._refusal(command, OFFSET_RANGE, reason, value=value, limit=LARGEST_POSITION)
-            table[place] = value
+            table[place] = value * self._channel.turning.offset_factor(place)
         self.changes = self.changes._replace(values={**self.changes.values, index: tuple(table)})
 
     def teach(
@@ -57,10 +61,13 @@ class OffsetMemory:
     ) -> None:
         """The present position becomes `value` in a zero offset: of one axis, or of all if it is empty.
 
-        Clamp position and tool lie below the zero offset. Raises CncError 22030, 22031, 22032.
+        Clamp position and tool lie below the zero offset. `value` of a facing axis is a radius. Raises CncError 22030,
+        22031, 22032.
         """
         places = [self.place(command, axis)] if axis else range(len(self._channel.axes))
-        self.set(command, index, {place: position[place] - below(state, place) - value for place in places})
+        offsets = {place: position[place] - below(state, place) - value for place in places}
+        factor = self._channel.turning.offset_factor
+        self.set(command, index, {place: offset / factor(place) for place, offset in offsets.items()})
 
     def choose_clamp_position(self, command: str, index: int) -> None:
         """Raises CncError 22033."""

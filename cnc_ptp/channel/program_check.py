@@ -13,6 +13,7 @@ from cnc_ptp.channel.program_times import BlockTimes
 from cnc_ptp.channel.thread_reading import ThreadReading
 from cnc_ptp.control.commands import NO_FRICTION_COMPENSATION
 from cnc_ptp.errors import CncError
+from cnc_ptp.nc.awaited import awaits_path
 from cnc_ptp.nc.canonical import (
     BUSY,
     AuxiliaryFunction,
@@ -27,28 +28,20 @@ from cnc_ptp.nc.canonical import (
     SpindleFunction,
     Thread,
 )
+from cnc_ptp.nc.check import CheckBlock, check
 from cnc_ptp.nc.contour import POS, path_defaults
 from cnc_ptp.nc.coordinates.codes import initial_state
 from cnc_ptp.nc.coordinates.coordinates import NO_CHANGES, OffsetChanges
 from cnc_ptp.nc.coordinates.limits import moving_axes, require_within
 from cnc_ptp.nc.expressions.values import Values, Variable, copies
 from cnc_ptp.nc.faults import ProgramError
-from cnc_ptp.nc.flow.execution import Limits
 from cnc_ptp.nc.flow.sections import Program
-from cnc_ptp.nc.interpreter import CheckBlock, awaits_path, check, interpret
+from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.measuring import measures
+from cnc_ptp.nc.modal_state import FacingAxis, ModalState, Pair, Pairs
 from cnc_ptp.nc.parser import NO_FILES, parse_program
-from cnc_ptp.nc.program import (
-    Channel,
-    FacingAxis,
-    ModalState,
-    Pair,
-    Pairs,
-    Spindle,
-    SpindleTable,
-    TurningAxes,
-    Vocabulary,
-)
+from cnc_ptp.nc.plain_channel import plain_channel
+from cnc_ptp.nc.program import Limits, Spindle, SpindleTable, TurningAxes, Vocabulary
 from cnc_ptp.nc.program_text import ProgramText
 from cnc_ptp.nc.radius.radius_state import radius_settings
 from cnc_ptp.nc.streamed_program import stream_program
@@ -58,6 +51,7 @@ from cnc_ptp.parameters import (
     ChannelParameters,
     ChannelSpindle,
     MachineParameters,
+    OffsetTables,
     SpindleParameters,
     catalogue,
 )
@@ -143,37 +137,28 @@ class ProgramCheck:
         self._spindles = spindle_table(channel, spindles)
         self._nodes = {spindle.name: spindle.node for spindle in channel.spindles}
         self._units = spindles
-        indices = {name: index for index, name in enumerate(self._axis_names)}
-        ratio = channel.circle_center_ratio
-        self._rotary = frozenset(axis.name for axis in channel.axes if axes[axis.node].rotary)
-        self._rotary |= frozenset(self._axis_names[len(self._axes) :])
-        tolerance = channel.circle_center_tolerance
+        spindles_on_path = len(self._axis_names) - len(self._axes)
+        references = [axis.homing.reference_position for axis in self._axes]
+        limits = [(axis.soft_limit_negative, axis.soft_limit_positive) for axis in self._axes]
         self.vocabulary = VOCABULARIES[channel.dialect]
         """That of the machine file."""
         self.cycles = channel.cycles
-        spindles_on_path = len(self._axis_names) - len(self._axes)
-        self._references = tuple([axis.homing.reference_position for axis in self._axes] + [0.0] * spindles_on_path)
-        limits = [(axis.soft_limit_negative, axis.soft_limit_positive) for axis in self._axes]
-        self._soft_limits = tuple(limits + [(-inf, inf)] * spindles_on_path)
-        self.nc = Channel(
-            self._axis_names,
-            indices,
-            self._spindles,
-            tolerance,
-            ratio,
-            self.vocabulary,
-            self._rotary,
-            channel.offsets,
-            self._soft_limits,
-            channel.tool_table,
-            path_defaults(channel),
-            self._references,
-            radius_settings(channel),
-            turning=turning_axes(channel, self._axes),
+        turning = turning_axes(channel, self._axes)
+        rotary = [axis.name for axis in channel.axes if axes[axis.node].rotary]
+        self.nc = plain_channel(self._axis_names, self._spindles, self.vocabulary, rotary)._replace(
+            centre_offset=channel.circle_center_tolerance,
+            centre_offset_ratio=channel.circle_center_ratio,
+            offsets=own_offsets(channel, turning),
+            soft_limits=tuple(limits + [(-inf, inf)] * spindles_on_path),
+            tools=channel.tool_table,
+            path=path_defaults(channel),
+            references=tuple(references + [0.0] * spindles_on_path),
+            radius=radius_settings(channel),
+            turning=turning,
+            limits=Limits(channel.call_depth, channel.repeats),
         )
         """The channel as the interpreter knows it."""
         self._threads = thread_settings(channel, self._axes, 0.0)
-        self._limits = Limits(channel.call_depth, channel.repeats)
         self.block_skip = 0
         """Bit n - 1: blocks with /n are skipped."""
 
@@ -200,24 +185,12 @@ class ProgramCheck:
         return check(
             text,
             file,
-            self._axis_names,
-            self._spindles,
+            self.nc._replace(vocabulary=vocabulary or self.vocabulary),
             start=self.start,
             check_target=partial(self.check_target, unlimited=self._names(self.unreferenced_at_start)),
             check_blocks=self._block_check,
-            centre_offset=self._channel.circle_center_tolerance,
-            centre_offset_ratio=self._channel.circle_center_ratio,
-            rotary=self._rotary,
-            tools=self._channel.tool_table,
-            radius=self.nc.radius,
-            references=self._references,
             files=files,
             cycles=self.cycles,
-            offsets=self._channel.offsets,
-            soft_limits=self._soft_limits,
-            turning_axes=self.nc.turning,
-            limits=self._limits,
-            vocabulary=vocabulary or self.vocabulary,
         )
 
     def _block_check(self) -> CheckBlock:
@@ -338,7 +311,7 @@ class ProgramCheck:
 
     def _thread_reading(self, start: Sequence[float], unlimited: Collection[str]) -> ThreadReading:
         """Axes in `unlimited` have no soft limits."""
-        pairs = zip(self._axis_names, self._soft_limits, strict=True)
+        pairs = zip(self._axis_names, self.nc.soft_limits, strict=True)
         limits = [(-inf, inf) if name in unlimited else limit for name, limit in pairs]
         return ThreadReading(self._threads, limits, start)
 
@@ -379,21 +352,10 @@ class ProgramCheck:
         stream = interpret(
             program,
             tuple(start),
-            self._axis_names,
-            self._spindles,
+            self.nc,
             state=state.modal,
             values=state.values,
             check_target=partial(self.check_target, unlimited=missing),
-            centre_offset=self._channel.circle_center_tolerance,
-            centre_offset_ratio=self._channel.circle_center_ratio,
-            rotary=self._rotary,
-            offsets=self._channel.offsets,
-            soft_limits=self._soft_limits,
-            tools=self._channel.tool_table,
-            radius=self.nc.radius,
-            references=self._references,
-            turning_axes=self.nc.turning,
-            limits=self._limits,
             block_skip=self.block_skip,
             runs=True,
             search=None if begin is None else begin.search,
@@ -531,7 +493,17 @@ def turning_axes(channel: ChannelParameters, axes: Sequence[AxisParameters]) -> 
         for index, axis in enumerate(axes)
         if axis.facing
     ]
-    return TurningAxes(tuple(facing), channel.shows_diameter, channel.cutting_speed_in_feet)
+    shown, feet = channel.shows_diameter, channel.cutting_speed_in_feet
+    return TurningAxes(tuple(facing), shown, feet, channel.offsets_in_diameters)
+
+
+def own_offsets(channel: ChannelParameters, turning: TurningAxes) -> OffsetTables:
+    """The offsets of the machine file, with radii in zero offsets of a facing axis."""
+
+    def radii(values: Sequence[float]) -> tuple[float, ...]:
+        return tuple([value * turning.offset_factor(place) for place, value in enumerate(values)])
+
+    return channel.offsets._replace(zero={index: radii(values) for index, values in channel.offsets.zero.items()})
 
 
 def spindle_table(channel: ChannelParameters, spindles: Mapping[str, SpindleParameters]) -> SpindleTable:

@@ -13,6 +13,7 @@ from typing import Final, NoReturn
 
 from cnc_ptp.channel.skipped_functions import SkippedFunctions
 from cnc_ptp.errors import CncError
+from cnc_ptp.nc.awaited import awaits_path
 from cnc_ptp.nc.block_search import BlockSearch, StartPoint, base_name
 from cnc_ptp.nc.canonical import (
     BEGIN,
@@ -28,9 +29,8 @@ from cnc_ptp.nc.canonical import (
 from cnc_ptp.nc.canonical_text import format_function
 from cnc_ptp.nc.flow.lines import Line
 from cnc_ptp.nc.flow.sections import Program
-from cnc_ptp.nc.interpreter import awaits_path
 from cnc_ptp.nc.measuring import measures
-from cnc_ptp.nc.program import ModalState
+from cnc_ptp.nc.modal_state import ModalState
 from cnc_ptp.protocol.commands import BAD_ARGUMENT
 
 NOT_FOUND: Final = 22040

@@ -24,8 +24,10 @@ from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, CycleBlock, Spindle
 
 
 class ThreadError(NamedTuple):
-    """Of a cycle, as ThreadState has it: mm and deg."""
+    """Of a cycle, as ThreadState has it: logical numbers of axis and spindle, mm and deg."""
 
+    axis: int
+    spindle: int
     lead: float
     set_pitch: float
     actual_pitch: float
@@ -33,7 +35,7 @@ class ThreadError(NamedTuple):
     actual_phase: float
 
 
-NO_THREAD: Final = ThreadError(nan, nan, nan, nan, nan)
+NO_THREAD: Final = ThreadError(0, 0, nan, nan, nan, nan, nan)
 
 
 class LastTurn:
@@ -75,9 +77,12 @@ class LastTurn:
 class ThreadErrors:
     """Keeps what the path stands for until spindle and axes have reported the cycle in which it acts."""
 
-    def __init__(self, nodes: Sequence[str], delay: int) -> None:
-        """`nodes` of the axes; `delay`: cycles by which they act later than their setpoints come."""
-        self._nodes, self._delay = nodes, delay
+    def __init__(self, nodes: Sequence[str], numbers: Mapping[str, int], delay: int) -> None:
+        """`nodes` of the axes; `numbers`: logical ones of axes and spindles, by node.
+
+        `delay`: cycles by which the axes act later than their setpoints come.
+        """
+        self._nodes, self._numbers, self._delay = nodes, numbers, delay
         self._places: dict[int, ThreadPlace] = {}
         """By cycle of the setpoint."""
         self._last_turn = LastTurn()
@@ -134,7 +139,8 @@ class ThreadErrors:
         actual_phase = set_phase + TURN * lag / place.lead
         per_degree = place.lead / TURN
         set_pitch, actual_pitch = self._last_turn.growth(angle, set_phase * per_degree, actual_phase * per_degree)
-        return ThreadError(place.lead, set_pitch, actual_pitch, set_phase, actual_phase)
+        axis_number, spindle_number = self._numbers[self._nodes[place.axis]], self._numbers[place.spindle]
+        return ThreadError(axis_number, spindle_number, place.lead, set_pitch, actual_pitch, set_phase, actual_phase)
 
     def _actual_position(self, axis: int, cycle: int, feedback: Mapping[str, CycleBlock]) -> float:
         """mm; NaN of an axis that has not reported."""
@@ -155,6 +161,8 @@ def add_thread(block: ChannelBlock, errors: Sequence[ThreadError]) -> None:
     """The errors of the cycles before a block."""
     if not errors:
         return
+    block.thread_axis = [error.axis for error in errors]
+    block.thread_spindle = [error.spindle for error in errors]
     block.thread_lead = [error.lead for error in errors]
     block.thread_set_pitch_error = [error.set_pitch for error in errors]
     block.thread_actual_pitch_error = [error.actual_pitch for error in errors]

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from cnc_ptp.errors import CncError
+from cnc_ptp.nc.awaited import awaits_path
 from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, LinearMove, Source
 from cnc_ptp.nc.faults import ProgramError
-from cnc_ptp.nc.interpreter import awaits_path
 from cnc_ptp.path.thread.retract import Retract
 from cnc_ptp.path.thread.thread_check import ThreadSettings, checked_geometry, with_retract, words_of
 

@@ -42,6 +42,7 @@ def read_entries(
             check_program(machine, text, program, files, dialect, begin)
         except ProgramError as error:
             search.explain(error, program)
+            error.effect = "nothing has moved"
             raise
         channel = next(iter(machine.channels))
         entries.append(Entry(0.0, Command(channel, "load", load_arguments(program, text, files, dialect))))

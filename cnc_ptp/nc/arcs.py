@@ -97,6 +97,8 @@ def extreme_points(start: tuple[float, ...], move: CircularMove) -> list[tuple[f
     An axis goes by size·cos(angle - crest) and by its linear part m for each radian: it reverses where
     sin(angle - crest) = m/size, in a plane of two axes at the multiples of 90 degrees.
     """
+    if move.directions is None:
+        return _quarter_points(start, move)
     first, second = directions(move)
     linear = linear_part([end - begin for begin, end in zip(start, move.target, strict=True)], move)
     begin = math.degrees(math.atan2(dot(start, second) - move.center[1], dot(start, first) - move.center[0]))
@@ -112,6 +114,25 @@ def extreme_points(start: tuple[float, ...], move: CircularMove) -> list[tuple[f
             angles.update(angle + 360.0 * turn for turn in turns)
     inside = sorted((angle for angle in angles if low < angle < high), reverse=move.sweep < 0.0)
     return [_point_at(start, move, linear, angle, (angle - begin) / move.sweep) for angle in inside]
+
+
+def _quarter_points(start: tuple[float, ...], move: CircularMove) -> list[tuple[float, ...]]:
+    """Those of an arc in a plane of two axes; the other axes go in proportion to the angle."""
+    first, second = move.plane
+    center0, center1 = move.center
+    begin = math.degrees(math.atan2(start[second] - center1, start[first] - center0))
+    low, high = min(begin, begin + move.sweep), max(begin, begin + move.sweep)
+    points: list[tuple[float, ...]] = []
+    quarter = math.floor(low / 90.0) + 1
+    while 90.0 * quarter < high:
+        angle = 90.0 * quarter
+        fraction = (angle - begin) / move.sweep
+        point = [a + (b - a) * fraction for a, b in zip(start, move.target, strict=True)]
+        point[first] = center0 + move.radius * cosine(angle)
+        point[second] = center1 + move.radius * sine(angle)
+        points.append(tuple(point))
+        quarter += 1
+    return points if move.sweep > 0.0 else points[::-1]
 
 
 def _point_at(

@@ -21,7 +21,8 @@ from cnc_ptp.nc.canonical import (
     SpindleFunction,
     SpindleLink,
 )
-from cnc_ptp.nc.program import Channel, GCode, HashCommand, ModalState, NcBlock, Spindle
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Channel, GCode, HashCommand, NcBlock, Spindle
 from cnc_ptp.nc.spindles import current_main, names
 
 CAX: Final = "[S, C], or #CAX, #CAX OFF"

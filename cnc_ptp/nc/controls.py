@@ -2,7 +2,8 @@
 
 from cnc_ptp.nc import faults, spindle_faults
 from cnc_ptp.nc.canonical import CompensationSwitch, Function, SpindleCommand, SpindleFeedforward, SpindleFunction
-from cnc_ptp.nc.program import Channel, ModalState, NcBlock, Spindle
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Channel, NcBlock, Spindle
 from cnc_ptp.nc.spindles import names
 
 

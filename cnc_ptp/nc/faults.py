@@ -34,7 +34,8 @@ class ProgramError(CncError):
 
     @property
     def full_message(self) -> str:
-        return self.message + called_in(self.calls)
+        effect = f"; {self.effect}" if self.effect else ""
+        return f"{self.where}: {self.reason}{called_in(self.calls)}{effect}"
 
     @property
     def caret(self) -> str:

@@ -11,7 +11,8 @@ from cnc_ptp.errors import Value
 from cnc_ptp.nc import faults, motions
 from cnc_ptp.nc.canonical import AxisFeedforward, Function, Source, SpindleFeedforward, number
 from cnc_ptp.nc.lexer import NUMBER, Token
-from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Channel, GCode, NcBlock
 
 ON: Final = 135
 WEIGHTS: Final = 136

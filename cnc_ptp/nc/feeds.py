@@ -6,7 +6,8 @@ from typing import Final
 from cnc_ptp.nc import faults, turning
 from cnc_ptp.nc.arcs import linear_part
 from cnc_ptp.nc.canonical import CircularMove, LinearMove
-from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Channel, GCode, NcBlock
 
 TIME: Final = 93
 INVERSE: Final = 930

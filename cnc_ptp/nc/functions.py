@@ -2,7 +2,8 @@
 
 from cnc_ptp.nc import faults, gears
 from cnc_ptp.nc.canonical import AuxiliaryFunction, Function, code_name, number
-from cnc_ptp.nc.program import Channel, MCode, ModalState, NcBlock
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Channel, MCode, NcBlock
 from cnc_ptp.nc.spindles import spindle_functions
 
 MAX_TOOL = 999_999_999

@@ -26,7 +26,8 @@ from cnc_ptp.nc.expressions.reader import ExpressionReader
 from cnc_ptp.nc.flow import flow_faults
 from cnc_ptp.nc.flow.lines import Line
 from cnc_ptp.nc.flow.statements import Declarations, Delete, EndOfModalCall, Mark
-from cnc_ptp.nc.program import Channel, HashCommand, ModalState, NcBlock
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Channel, HashCommand, NcBlock
 from cnc_ptp.nc.spindles import current_main, name_of, names
 from cnc_ptp.nc.tools import tool_commands
 

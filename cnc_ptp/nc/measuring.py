@@ -6,8 +6,9 @@ from typing import NamedTuple
 from cnc_ptp.nc import faults
 from cnc_ptp.nc.canonical import LinearMove, Motion
 from cnc_ptp.nc.contour import EXACT_STOP
+from cnc_ptp.nc.modal_state import ModalState
 from cnc_ptp.nc.motions import straight
-from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
+from cnc_ptp.nc.program import Channel, GCode, NcBlock
 
 
 class Touch(NamedTuple):

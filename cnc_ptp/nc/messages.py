@@ -17,7 +17,8 @@ from cnc_ptp.nc.expressions.values import Values, in_words
 from cnc_ptp.nc.flow import flow_faults as faults
 from cnc_ptp.nc.flow.command_words import Words
 from cnc_ptp.nc.flow.lines import Flow, Line, Statement
-from cnc_ptp.nc.program import Channel, HashCommand, ModalState, NcBlock
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Channel, HashCommand, NcBlock
 
 MODES: Final = ("SYN", "SYN_ACK", "ACK")
 RECEIVERS: Final = ("HMI", "PLC", "DIAG", "ISG_DIAG_BED", "EVENT_LOGGER")

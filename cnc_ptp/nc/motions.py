@@ -9,7 +9,8 @@ from typing import NamedTuple
 from cnc_ptp.errors import Value
 from cnc_ptp.nc import arcs, faults, feeds, turning
 from cnc_ptp.nc.canonical import CircularMove, Dwell, LinearMove, number
-from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Channel, GCode, NcBlock
 from cnc_ptp.nc.spindles import current_main
 
 

@@ -1,16 +1,12 @@
-"""Types between parser and interpreter: the rows of the vocabulary, the parsed blocks and the modal state."""
+"""Types between parser and interpreter: the rows of the vocabulary, the parsed blocks, the constants of a channel."""
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, fields, replace
+from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple
 
 from cnc_ptp.nc.canonical import CompensationSwitch, Function, Motion, Source, SpindleFeedforward, code_name
-from cnc_ptp.nc.contour import DEFAULT_CONTOUR, PATH_DEFAULTS, THROUGH, Contour, PathDefaults, Transition
-from cnc_ptp.nc.coordinates.coordinates import Coordinates
-from cnc_ptp.nc.coordinates.frame import Frame
-from cnc_ptp.nc.faults import ProgramError
-from cnc_ptp.nc.radius.radius_state import DEFAULT_SETTINGS, NOT_COMPENSATED, RadiusSettings, RadiusState
-from cnc_ptp.nc.tools.tool_state import ToolState
+from cnc_ptp.nc.contour import PATH_DEFAULTS, PathDefaults
+from cnc_ptp.nc.modal_state import FacingAxis, ModalState, Pairs
+from cnc_ptp.nc.radius.radius_state import DEFAULT_SETTINGS, RadiusSettings
 from cnc_ptp.parameters import NO_OFFSET_TABLES, NO_TOOLS, OffsetTables, ToolTable
 
 MAX_M: Final = 999
@@ -181,18 +177,6 @@ class Spindle(NamedTuple):
     path_gear: int = 0
 
 
-class Pair(NamedTuple):
-    """Coupled spindles by key. The slave turns `num` / `den` times as fast as the master."""
-
-    slave: str
-    master: str
-    num: float = 1.0
-    den: float = 1.0
-
-
-Pairs = tuple[Pair, ...]
-
-
 class SpindleTable(NamedTuple):
     """The spindles of a channel, at start-up the first is the main spindle.
 
@@ -243,134 +227,65 @@ class HashCommand(NamedTuple):
     run: "Callable[[Channel, ModalState, NcBlock, HashCommand], tuple[Function, ...]]"
 
 
-class Step(NamedTuple):
-    """A further motion of a block, in programmed or in `machine` coordinates, with functions before it."""
-
-    motion: Motion | None
-    functions: tuple[Function, ...] = ()
-    machine: bool = False
-
-
-class Tapping(NamedTuple):
-    """What stays from one block with G63, G331, G332 to the next: the last S was negative; last pitch, mm, 0 none.
-
-    `spindle`: key of the one whose speed it was, "" the main one.
-    """
-
-    reversed: bool = False
-    pitch: float = 0.0
-    spindle: str = ""
-
-
-NO_TAPPING: Final = Tapping()
-
-
-class FacingAxis(NamedTuple):
-    """A facing axis (P-AXIS-00015) by its place: its words are diameters with G51 and G90, with G51 and G91."""
-
-    place: int
-    absolute: bool = True
-    relative: bool = False
-
-
 class TurningAxes(NamedTuple):
     """Facing axes of a channel, and its settings of turning.
 
-    shown   G51 shows the facing axis in diameters (P-CHAN-00256)
-    feet    S of G96 is in ft/min with G70 (P-CHAN-00360)
+    shown    G51 shows the facing axis in diameters (P-CHAN-00256)
+    feet     S of G96 is in ft/min with G70 (P-CHAN-00360)
+    doubled  its zero offsets and G92 are given as diameters (P-CHAN-00091); inside they are radii
     """
 
     facing: tuple[FacingAxis, ...] = ()
     shown: bool = False
     feet: bool = False
+    doubled: bool = False
+
+    def offset_factor(self, place: int) -> float:
+        """That makes the offset of an axis of one as it is given."""
+        return 0.5 if self.doubled and any(axis.place == place for axis in self.facing) else 1.0
 
 
 NO_TURNING_AXES: Final = TurningAxes()
 
 
-class Turning(NamedTuple):
-    """Modal state of turning.
-
-    diameter   the axis of G51, None with G52
-    feed       F of G95, mm per turn
-    facing     place of the facing axis of G96, -1 with G97
-    speed      cutting speed, mm/s; 0: no S since G96
-    max_rpm    of G196, 0 without
-    """
-
-    diameter: FacingAxis | None = None
-    feed: float = 0.0
-    facing: int = -1
-    speed: float = 0.0
-    max_rpm: float = 0.0
+CENTRE_OFFSET: Final = 2.0
+"""Default of P-CHAN-00059 mittelpkt_diff: 20000 in 0.1 µm; mm."""
+CENTRE_OFFSET_RATIO: Final = 0.05
+"""Default of P-CHAN-00060 mittelpkt_faktor: 50 in 0.1 %; share of the radius."""
 
 
-NO_TURNING: Final = Turning()
+class Limits(NamedTuple):
+    """`call_depth`: subroutines within each other; `repeats`: jumps back and calls in all, blocks of repeated lines."""
+
+    call_depth: int = 20
+    repeats: int = 1_000_000
 
 
-class Drilling(NamedTuple):
-    """Numbers of the drilling cycles of the vocabulary iso that stay from block to block.
-
-    to_r      G99: back to the retract plane
-    running   number of the cycle that is on (81), 0: none; in the plane `plane`
-    initial   position of the drill axis before it, mm
-    r, z      levels of the retract plane and of the bottom, mm; q peck depth, mm; p dwell, s; None: not programmed
-    """
-
-    to_r: bool = False
-    running: int = 0
-    plane: int = 17
-    initial: float = 0.0
-    r: float | None = None
-    z: float | None = None
-    q: float | None = None
-    p: float | None = None
-
-
-NO_DRILLING: Final = Drilling()
-
-
-class ThreadState(NamedTuple):
-    """Numbers of G33, G34 and G35 that stay to the end of the program.
-
-    letter    of the pitch (I, J, K), "" none yet; `pitch` in mm per revolution
-    change    F of G34 and G35, mm per revolution and revolution
-    offset    deg from the zero passage of the spindle to the start of the thread
-    runs      the last motion was one of G33: another one continues its thread
-    changed   what has commanded the spindle since, "" nothing
-    stopped   spindles that the program has stopped
-    retract   place of an axis and its way, mm, for threads that are broken off; None: as the machine file says
-    """
-
-    letter: str = ""
-    pitch: float = 0.0
-    change: float = 0.0
-    offset: float = 0.0
-    runs: bool = False
-    changed: str = ""
-    stopped: frozenset[str] = frozenset()
-    retract: tuple[int, float] | None = None
-
-
-NO_THREAD: Final = ThreadState()
+LIMITS: Final = Limits()
 
 
 class Channel(NamedTuple):
-    """Constants while a program is interpreted: axes, spindles, arc limits (mm, ratio), its vocabulary.
+    """All that stays the same while a program is interpreted: axes, spindles, vocabulary, settings of the machine.
 
-    `rotary`: axes in deg; `offsets` of the machine file; `soft_limits`: the lowest and highest position of each axis,
-    empty for none. `path`: how the path goes from block to block at the start; `references`: position of the reference
-    point of each axis (P-AXIS-00152), empty for 0; `radius`: how the radius of tools is compensated; `turning`: facing
-    axes, and what the machine has for turning.
+    rotary        axes in deg
+    centre_offset, centre_offset_ratio  how far the centre of an arc may be corrected, mm and share of the radius
+                  (P-CHAN-00059, P-CHAN-00060 / 1000); the smaller of both limits counts
+    offsets       zero offsets and clamp positions of the machine file
+    soft_limits   lowest and highest position of each axis, empty for none
+    path          how the path goes from block to block at the start
+    references    position of the reference point of each axis (P-AXIS-00152), empty for 0
+    radius        how the radius of tools is compensated
+    turning       facing axes, and what the machine has for turning
+    limits        of calls and repeated lines
     """
 
     axes: tuple[str, ...]
     axis_index: dict[str, int]
     table: SpindleTable
-    centre_offset: float
-    centre_offset_ratio: float
     vocabulary: Vocabulary
     rotary: frozenset[str] = frozenset()
+    centre_offset: float = CENTRE_OFFSET
+    centre_offset_ratio: float = CENTRE_OFFSET_RATIO
     offsets: OffsetTables = NO_OFFSET_TABLES
     soft_limits: tuple[tuple[float, float], ...] = ()
     tools: ToolTable = NO_TOOLS
@@ -378,6 +293,7 @@ class Channel(NamedTuple):
     references: tuple[float, ...] = ()
     radius: RadiusSettings = DEFAULT_SETTINGS
     turning: TurningAxes = NO_TURNING_AXES
+    limits: Limits = LIMITS
 
     @property
     def main(self) -> tuple[int, int, int]:
@@ -389,105 +305,3 @@ class Channel(NamedTuple):
     def t_selects(self) -> bool:
         """T selects compensation data too (P-CHAN-00014); not in the vocabulary iso, which has no D."""
         return self.tools.with_t and "D" in self.vocabulary.function_words
-
-
-@dataclass(slots=True)
-class SpindleModes:
-    """Modal state of spindles from one block to the next; by key if there is one value for each.
-
-    main        the main spindle, "" for the one at start-up
-    positions   last POS, deg
-    gears       gear stage; that at start-up if there is none
-    turning     3 or 4 while endless rotation is programmed
-    links       coupling groups that were defined (#SET AX LINK), by number
-    active      numbers of the groups that are enabled, the last one last
-    speedless   errors of M3 and M4 that still have no speed: it must come before the first machining motion
-    """
-
-    main: str = ""
-    positions: dict[str, float] = field(default_factory=dict)
-    gears: dict[str, int] = field(default_factory=dict)
-    turning: dict[str, int] = field(default_factory=dict)
-    links: dict[int, Pairs] = field(default_factory=dict)
-    active: tuple[int, ...] = ()
-    speedless: dict[str, ProgramError] = field(default_factory=dict)
-
-    def copy(self) -> "SpindleModes":
-        """An independent copy."""
-        return SpindleModes(
-            self.main,
-            dict(self.positions),
-            dict(self.gears),
-            dict(self.turning),
-            dict(self.links),
-            self.active,
-            dict(self.speedless),
-        )
-
-
-@dataclass(slots=True)
-class ModalState:
-    """Modal state from one block to the next: mm, mm/s, rpm; the defaults are the initial state of a program.
-
-    `path`, `plane`, `feed_mode`: numbers of the active G codes; `block_time`: F with G93 (s); `radius`: last R (mm,
-    signed, 0.0 none); `speeds`: S by spindle; `slope`: #SLOPE, "" is that of P-CHAN-00071. `position` in machine
-    coordinates, `programmed`: the same point as programs name it, by `frame` (None: they are equal), which is what
-    `coordinates` amount to; while the tool radius is compensated both are points of the contour. `reported`: the
-    canonical stream has them. `transition`: between blocks; `once`: at the end of the active one instead; `contour`:
-    what G261 means. While a block is resolved: `following`, its further motions; `machine_words`, its axis words are
-    machine positions (G53 of the vocabulary iso). `c_axis`: key of the spindle that #CAX has made an axis of the path.
-    """
-
-    position: tuple[float, ...] = ()
-    path: int = 0
-    plane: int = 17
-    absolute: bool = True
-    centre_absolute: bool = False
-    feed: float = 0.0
-    feed_mode: int = 94
-    block_time: float = 0.0
-    radius: float = 0.0
-    speeds: dict[str, float] = field(default_factory=dict)
-    spindle: SpindleModes = field(default_factory=SpindleModes)
-    slope: str = ""
-    coordinates: Coordinates = field(default_factory=Coordinates)
-    frame: Frame | None = None
-    programmed: tuple[float, ...] = ()
-    reported: bool = field(default=False, compare=False)
-    drilling: Drilling = NO_DRILLING
-    tapping: Tapping = NO_TAPPING
-    turning: Turning = NO_TURNING
-    c_axis: str = ""
-    transition: Transition = THROUGH
-    interim_point: dict[int, float] | None = None
-    once: Transition | None = None
-    contour: Contour = DEFAULT_CONTOUR
-    following: Iterator[Step] | None = None
-    machine_words: bool = False
-    tool: ToolState = field(default_factory=ToolState)
-    radius_compensation: RadiusState = NOT_COMPENSATED
-    thread: ThreadState = NO_THREAD
-
-    def copy(self) -> "ModalState":
-        """An independent copy, so that a refused MDI line leaves the state unchanged."""
-        spindle, coordinates = self.spindle.copy(), self.coordinates.copy()
-        return replace(self, speeds=dict(self.speeds), spindle=spindle, coordinates=coordinates, tool=self.tool.copy())
-
-    def take_over(self, other: "ModalState") -> None:
-        """All of another state, which is void then."""
-        for each in fields(self):
-            setattr(self, each.name, getattr(other, each.name))
-
-    def restore(self, other: "ModalState") -> None:
-        """After a cycle: codes, feed, radius, coordinates, D of its caller; position, T, spindles, tables are kept."""
-        self.path, self.plane, self.absolute = other.path, other.plane, other.absolute
-        self.centre_absolute, self.feed, self.radius = other.centre_absolute, other.feed, other.radius
-        self.feed_mode, self.block_time = other.feed_mode, other.block_time
-        self.turning = self.turning._replace(diameter=other.turning.diameter, feed=other.turning.feed)
-        changes = self.coordinates.changes
-        self.slope, self.coordinates = other.slope, other.coordinates
-        self.transition, self.contour, self.interim_point = other.transition, other.contour, other.interim_point
-        self.coordinates.changes = changes
-        self.tool.d, self.tool.data = other.tool.d, other.tool.data
-        engaged = self.radius_compensation.engaged
-        self.radius_compensation = other.radius_compensation._replace(engaged=engaged)

@@ -12,7 +12,7 @@ from cnc_ptp.nc.coordinates import coordinate_faults
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.execution import Execution
 from cnc_ptp.nc.iso import iso_faults
-from cnc_ptp.nc.program import ModalState
+from cnc_ptp.nc.modal_state import ModalState
 
 MOST_ERRORS: Final = 20
 """Errors of one interpretation."""

@@ -13,7 +13,8 @@ from cnc_ptp.nc import faults, spindle_faults
 from cnc_ptp.nc.canonical import Function, SpindleLink
 from cnc_ptp.nc.faults import Fault, ProgramError
 from cnc_ptp.nc.lexer import NUMBER
-from cnc_ptp.nc.program import Channel, HashCommand, ModalState, NcBlock, Pair, Pairs, Spindle
+from cnc_ptp.nc.modal_state import ModalState, Pair, Pairs
+from cnc_ptp.nc.program import Channel, HashCommand, NcBlock, Spindle
 from cnc_ptp.nc.spindles import current_main, name_of, names
 from cnc_ptp.spindle.ratio import LARGEST_RATIO, SMALLEST_RATIO, is_permitted
 

@@ -21,7 +21,8 @@ from cnc_ptp.nc.canonical import (
     SpindleFunction,
     number,
 )
-from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock, Pair, Spindle, SpindleTable, SpindleWords
+from cnc_ptp.nc.modal_state import ModalState, Pair
+from cnc_ptp.nc.program import Channel, GCode, NcBlock, Spindle, SpindleTable, SpindleWords
 from cnc_ptp.parameters.list_units import LARGEST_POSITION
 from cnc_ptp.spindle.ratio import OPPOSITE, scaled
 

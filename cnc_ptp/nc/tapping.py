@@ -15,8 +15,9 @@ from cnc_ptp.nc import faults, feeds, spindle_faults, turning_faults
 from cnc_ptp.nc.canonical import Function, GearChange, LinearMove, SpindleFunction, Tap, number
 from cnc_ptp.nc.contour import EXACT_STOP
 from cnc_ptp.nc.functions import block_functions
+from cnc_ptp.nc.modal_state import ModalState
 from cnc_ptp.nc.motions import target_of
-from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock, Spindle
+from cnc_ptp.nc.program import Channel, GCode, NcBlock, Spindle
 from cnc_ptp.nc.spindles import current_main, is_slave, names, require_permitted_speed, require_spindle
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 

@@ -26,8 +26,9 @@ from cnc_ptp.nc.canonical import (
     number,
 )
 from cnc_ptp.nc.coordinates.frame import LEAST
+from cnc_ptp.nc.modal_state import ModalState
 from cnc_ptp.nc.motions import target_of
-from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
+from cnc_ptp.nc.program import Channel, GCode, NcBlock
 from cnc_ptp.nc.spindles import ROTATION, current_main, name_of, names, require_spindle
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 

@@ -19,7 +19,8 @@ from cnc_ptp.nc.canonical import Function, KinematicsChange, number
 from cnc_ptp.nc.coordinates.coordinates import Coordinates
 from cnc_ptp.nc.coordinates.placement import refresh
 from cnc_ptp.nc.faults import Fault, ProgramError
-from cnc_ptp.nc.program import Channel, HashCommand, ModalState, NcBlock
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Channel, HashCommand, NcBlock
 
 FACE: Final = "#FACE [X, C], with the facing axis and the C axis, or #FACE OFF"
 CYLINDER: Final = "#CYL [Z, C, X60], with the axis along the cylinder, the C axis and the radius, or #CYL OFF"

@@ -10,7 +10,8 @@ from cnc_ptp.nc.contour import DEV, DIST, EXACT_STOP, POS, THROUGH, Contour, Smo
 from cnc_ptp.nc.expressions.nodes import Node
 from cnc_ptp.nc.flow.command_words import Words
 from cnc_ptp.nc.flow.lines import Flow, Line, Statement
-from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Channel, GCode, NcBlock
 from cnc_ptp.nc.turning import radius_of
 
 LENGTHS: Final = ("PATH_DEV", "PRE_DIST", "POST_DIST")

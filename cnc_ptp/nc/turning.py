@@ -23,7 +23,8 @@ from cnc_ptp.nc.canonical import (
 from cnc_ptp.nc.coordinates.placement import PLANE_AXES
 from cnc_ptp.nc.functions import block_functions
 from cnc_ptp.nc.gears import speed_range
-from cnc_ptp.nc.program import Channel, FacingAxis, GCode, ModalState, NcBlock, Spindle
+from cnc_ptp.nc.modal_state import FacingAxis, ModalState
+from cnc_ptp.nc.program import Channel, GCode, NcBlock, Spindle
 from cnc_ptp.nc.spindles import current_main, require_spindle
 
 CONSTANT: Final = 96

@@ -18,7 +18,8 @@ from cnc_ptp.nc import (
     turning,
 )
 from cnc_ptp.nc.coordinates import codes
-from cnc_ptp.nc.program import GCode, MCode, ModalState, Vocabulary
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import GCode, MCode, Vocabulary
 from cnc_ptp.nc.radius import radius_codes
 from cnc_ptp.nc.tools.compensation import follow_plane
 

@@ -37,6 +37,7 @@ from cnc_ptp.nodes.topics import MONITOR, RECORDER
 from cnc_ptp.nodes.unit.claim import require_free
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import Event, Severity
+from cnc_ptp.protocol.notes import Note
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.recording.closing import close_cut
 from cnc_ptp.ros_arguments import ros_arguments
@@ -44,8 +45,12 @@ from cnc_ptp.start_options import start_words
 
 SERVER = "server of processes"
 NOT_READY = 26105
+STARTED_AGAIN = 26146
 POLL = 0.05
-START_TIMEOUT = 60.0
+START_TIMEOUTS = (20.0, 20.0, 60.0)
+"""Seconds from the node that came last to the first cycle, in each try to start: of the mill 1 to 4 s, of 26 nodes on
+two busy cores 10 s. The last one is for slow computers, and for nodes that are still to come: one may have a long
+program to read."""
 STOP_TIMEOUT = 15.0
 """Seconds for all ramps after a fault or an interrupt."""
 END_TIMEOUT = 5.0
@@ -95,32 +100,39 @@ class Supervisor:
         self._dead: set[str] = set()
         self._interrupted = False
         self._signals: list[int] = []
+        self._failed_starts: list[Note] = []
         self.failures: list[str] = []
 
     def run(self) -> RunMonitor:
         """Runs it to its end; `failures` then lists what went wrong with processes."""
         start_server()
-        with only_run(self._options):
-            return self._run()
+        with only_run(self._options), self._signals_noted():
+            for number, patience in enumerate(START_TIMEOUTS):
+                self._patience = patience
+                monitor = self._run()
+                if len(self._failed_starts) == number or self._interrupted_between_starts():
+                    break
+                process.initialise()
+        return monitor
 
     def _run(self) -> RunMonitor:
+        """One try, with a monitor of its own: it may be the one that has not found the others."""
         monitor = RunMonitor(self._machine)
         require_free(monitor, unit_kinds(self._machine))
         if self._watched:
             monitor.watch_units()
+        for note in self._failed_starts:
+            monitor.notes.add(note)
         self._event_publisher = EventPublisher(monitor)
         self._stop_all: Client[Any, Any] = monitor.create_client(srv.Execute, f"{PLC}/stop_all")
-        previous = {number: signal.signal(number, self._note_signal) for number in (signal.SIGINT, signal.SIGTERM)}
         self._monitor = monitor
-        self._started_at = time.monotonic()
         try:
             self._start_all()
+            self._absent, self._came_at = len(self._processes), time.monotonic()
             process.spin([monitor], done=self._over, wait=lambda: POLL, after=self._look)
         finally:
             self._end_all()
             self._close_recording()
-            for number, handler in previous.items():
-                signal.signal(number, handler)
         return monitor
 
     def _look(self) -> None:
@@ -149,16 +161,37 @@ class Supervisor:
         return settled or time.monotonic() > self._stop_deadline
 
     def _not_started_in_time(self) -> bool:
-        if self._monitor.cycle or time.monotonic() - self._started_at < START_TIMEOUT:
+        """True when this try to start has failed; nothing has moved then."""
+        if self._monitor.cycle:
             return False
         names = self._monitor.get_node_names_and_namespaces()
         there = {name for name, namespace in names if namespace == self._monitor.get_namespace()}
-        absent = ", ".join(name for name in self._processes if name not in there) or "none"
-        self.failures.append(
-            f"P-ERR-{NOT_READY} the nodes did not find each other within {START_TIMEOUT:g} s "
-            f"(not there: {absent}); the run ends"
+        absent = [name for name in self._processes if name not in there]
+        if len(absent) < self._absent:
+            self._absent, self._came_at = len(absent), time.monotonic()
+        patience = START_TIMEOUTS[-1] if absent else self._patience
+        if time.monotonic() - self._came_at < patience:
+            return False
+        self._note_failed_start(
+            f"the nodes did not find each other within {patience:g} s (not there: {', '.join(absent) or 'none'})"
         )
         return True
+
+    def _note_failed_start(self, text: str) -> None:
+        tries, this_try = len(START_TIMEOUTS), len(self._failed_starts) + 1
+        if this_try == tries:
+            self.failures.append(f"P-ERR-{NOT_READY} {text}; the run ends")
+            return
+        note = Note(STARTED_AGAIN, f"{text}; they are started again ({this_try + 1} of {tries})")
+        self._failed_starts.append(note)
+        self._monitor.notes.add(note)
+
+    def _interrupted_between_starts(self) -> bool:
+        """An interrupt that came while the nodes of a failed start were ended: nothing is started again."""
+        if self._signals:
+            name = signal.Signals(self._signals[0]).name
+            self.failures.append(f"P-ERR-{INTERRUPTED} the run was interrupted ({name}); nothing has moved yet")
+        return bool(self._signals)
 
     def _note_deaths(self) -> None:
         for name, child in self._processes.items():
@@ -193,6 +226,16 @@ class Supervisor:
 
     def _what_follows(self) -> str:
         return "everything stops on its ramps" if self._monitor.cycle else "nothing has moved yet"
+
+    @contextmanager
+    def _signals_noted(self) -> Iterator[None]:
+        numbers = (signal.SIGINT, signal.SIGTERM)
+        previous = {number: signal.signal(number, self._note_signal) for number in numbers}
+        try:
+            yield
+        finally:
+            for number, handler in previous.items():
+                signal.signal(number, handler)
 
     def _note_signal(self, number: int, frame: object) -> None:
         """Only notes it: a handler may interrupt anything that the process does."""

@@ -11,6 +11,7 @@ from plotly.subplots import make_subplots
 
 from cnc_ptp.plots.colours import BY_AXIS, INK
 from cnc_ptp.plots.page import name_cell, number_cell, plot_div, section, table, text_cell
+from cnc_ptp.plots.program_run import machine_of
 from cnc_ptp.plots.report_figures import ROW_GAP, compact, style
 from cnc_ptp.recording.decimate import line_points
 from cnc_ptp.recording.reader import Recorded
@@ -48,7 +49,7 @@ UNROLLED_NOTE = (
 
 def thread_sections(recorded: Recorded) -> str:
     """Empty for a recording without threads."""
-    passes = thread_passes(recorded)
+    passes = thread_passes(recorded, machine_of(recorded))
     if not passes:
         return ""
     drawn = passes[:MOST_PASSES]

@@ -206,6 +206,8 @@ class ChannelBlock:
     spindle_speed: list[float] = field(default_factory=list)
     spindle_acceleration: list[float] = field(default_factory=list)
     spindle_jerk: list[float] = field(default_factory=list)
+    thread_axis: list[int] = field(default_factory=list)
+    thread_spindle: list[int] = field(default_factory=list)
     thread_lead: list[float] = field(default_factory=list)
     thread_set_pitch_error: list[float] = field(default_factory=list)
     thread_actual_pitch_error: list[float] = field(default_factory=list)

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cnc_ptp.parameters import ChannelParameters, MachineParameters
+from cnc_ptp.protocol.spindle_states import SpindleBit
 from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, SPINDLE_STATE, Coordinates, Recorded
 from cnc_ptp.recording.rows import ACTUAL
 from cnc_ptp.wire.layout import Records
@@ -90,14 +91,20 @@ def _surface(
 def _positions(
     recorded: Recorded, channel: ChannelParameters, name: str, cycles: tuple[int, int], values: str
 ) -> Floats | None:
-    """Positions of an axis by its name in programs; of the C axis those of the main spindle."""
+    """Positions of an axis by its name in programs; of the C axis those of the spindle that is on the path."""
     node = next((axis.node for axis in channel.axes if axis.name == name), "")
     if node:
         rows = part_of(recorded.of_type(AXIS_STATE).get(node), cycles)
         return None if rows is None else rows[f"{values}_position"]
-    spindle = next((entry.node for entry in channel.spindles if entry.name == channel.main_spindle), "")
-    rows = part_of(recorded.of_type(SPINDLE_STATE).get(spindle), cycles)
-    return None if rows is None else rows[f"{values}_position_deg"]
+    states = recorded.of_type(SPINDLE_STATE)
+    spindles = [part_of(states.get(entry.node), cycles) for entry in channel.spindles]
+    rows = max([each for each in spindles if each is not None], key=_cycles_on_path, default=None)
+    return None if rows is None or not _cycles_on_path(rows) else rows[f"{values}_position_deg"]
+
+
+def _cycles_on_path(spindle: Records) -> int:
+    """In how many of these states the path moves a spindle (#MAIN SPINDLE may have made another one the C axis)."""
+    return int(np.count_nonzero(spindle["status_bits"] & np.uint32(SpindleBit.ON_PATH)))
 
 
 def part_of(rows: Records | None, cycles: tuple[int, int]) -> Records | None:

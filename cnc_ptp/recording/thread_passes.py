@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, SPINDLE_STATE, Recorded
 from cnc_ptp.wire.layout import Records
 
@@ -21,7 +22,7 @@ SAME_LEAD = 1e-3
 class ThreadPass:
     """A pass with its n cycles.
 
-    channel, axis, spindle   names; `axis` is the one with the longest way, along which the pitch counts
+    channel, axis, spindle   names; along `axis` the pitch counts
     line                     first line of its program
     errors                   states of the thread (n,)
     position, angle          of the axis (mm) and of the spindle (deg, + = M03), actual values (n,)
@@ -67,48 +68,50 @@ def phase_against(one: ThreadPass, other: ThreadPass) -> float:
     return (other.phase - one.phase + 0.5 * TURN) % TURN - 0.5 * TURN
 
 
-def thread_passes(recorded: Recorded) -> list[ThreadPass]:
-    """All passes of two cycles and more in the order of the channels and of time."""
-    return [found for channel, rows in recorded.threads.items() for found in _of_channel(recorded, channel, rows)]
+def thread_passes(recorded: Recorded, machine: MachineParameters | None) -> list[ThreadPass]:
+    """All passes of two cycles and more in the order of the channels and of time.
+
+    None without a machine file, which says whose the numbers of axes and spindles are; nor of an older recording
+    without these numbers.
+    """
+    if machine is None:
+        return []
+    threads = recorded.threads.items()
+    return [found for channel, rows in threads for found in _of_channel(recorded, machine, channel, rows)]
 
 
-def _of_channel(recorded: Recorded, channel: str, rows: Records) -> Iterator[ThreadPass]:
-    known = rows[~np.isnan(rows["lead"])]
-    gaps = np.flatnonzero(np.diff(known["cycle"].astype(np.int64)) != 1) + 1
-    for part in np.split(np.arange(len(known)), gaps):
-        found = _pass(recorded, channel, known[part]) if len(part) > 1 else None
+def _of_channel(recorded: Recorded, machine: MachineParameters, channel: str, rows: Records) -> Iterator[ThreadPass]:
+    """A pass ends where cycles are missing, and where another axis or spindle counts."""
+    if not {"axis", "spindle"} <= set(rows.dtype.names or ()):
+        return
+    known = rows[rows["spindle"] > 0]
+    parting = np.diff(known["cycle"].astype(np.int64)) != 1
+    for name in ("axis", "spindle"):
+        parting |= known[name][1:] != known[name][:-1]
+    for part in np.split(np.arange(len(known)), np.flatnonzero(parting) + 1):
+        found = _pass(recorded, machine, channel, known[part]) if len(part) > 1 else None
         if found is not None:
             yield found
 
 
-def _pass(recorded: Recorded, channel: str, errors: Records) -> ThreadPass | None:
-    """None where the states of its cycles are not complete, or nothing moves."""
+def _pass(recorded: Recorded, machine: MachineParameters, channel: str, errors: Records) -> ThreadPass | None:
+    """None where the states of its cycles are not complete."""
+    axis = next((name for name, unit in machine.axes.items() if unit.number == errors["axis"][0]), "")
+    spindle = next((name for name, unit in machine.spindles.items() if unit.number == errors["spindle"][0]), "")
     cycles = errors["cycle"]
-    axes = _columns(recorded.of_type(AXIS_STATE), "actual_position", cycles)
-    spindles = _columns(recorded.of_type(SPINDLE_STATE), "actual_position_deg", cycles)
-    lines = _columns(recorded.of_type(CHANNEL_STATE), "line", cycles).get(channel)
-    if not axes or not spindles:
+    position = _column(recorded.of_type(AXIS_STATE).get(axis), "actual_position", cycles)
+    angle = _column(recorded.of_type(SPINDLE_STATE).get(spindle), "actual_position_deg", cycles)
+    lines = _column(recorded.of_type(CHANNEL_STATE).get(channel), "line", cycles)
+    if position is None or angle is None:
         return None
-    axis = max(axes, key=lambda name: float(np.ptp(axes[name])))
-    position = axes[axis]
-    lead = float(np.median(errors["lead"]))
-    spindle = min(spindles, key=lambda name: _misfit(spindles[name], position, lead))
     line = int(lines[0]) if lines is not None else 0
     seconds = float(recorded.seconds(cycles[:1])[0])
-    cycle_time = recorded.cycle_time_ns * 1e-9
-    return ThreadPass(channel, axis, spindle, line, errors, position, spindles[spindle], seconds, cycle_time)
+    return ThreadPass(channel, axis, spindle, line, errors, position, angle, seconds, recorded.cycle_time_ns * 1e-9)
 
 
-def _columns(states: Mapping[str, Records], field: str, cycles: npt.NDArray[np.uint64]) -> dict[str, Floats]:
-    """A field in these cycles, by unit; without units that lack one of them."""
-    found: dict[str, Floats] = {}
-    for name, rows in states.items():
-        part = rows[(rows["cycle"] >= cycles[0]) & (rows["cycle"] <= cycles[-1])]
-        if len(part) == len(cycles):
-            found[name] = part[field].astype(np.float64)
-    return found
-
-
-def _misfit(angle: Floats, position: Floats, lead: float) -> float:
-    """deg by which a spindle is off the thread, for the choice of several."""
-    return float(np.ptp(angle - TURN * position / lead))
+def _column(rows: Records | None, field: str, cycles: npt.NDArray[np.uint64]) -> Floats | None:
+    """A field in these cycles; None if one of them is missing."""
+    if rows is None:
+        return None
+    part = rows[(rows["cycle"] >= cycles[0]) & (rows["cycle"] <= cycles[-1])]
+    return part[field].astype(np.float64) if len(part) == len(cycles) else None

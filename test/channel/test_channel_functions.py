@@ -166,14 +166,14 @@ def test_a_second_spindle_by_name() -> None:
 
 
 def test_m_functions_are_acknowledged_automatically() -> None:
-    bench = MachineBench("%P\nG01 X5 F3000 M08\nG01 X10 M09\nT3 D4\nM30").run()
+    bench = MachineBench("%P\nG01 X5 F3000 M08\nG01 X10 M09\nT3 D2\nM30").run()
     assert bench.errors() == []
     described = [(r.kind, r.number, r.line, r.acknowledge_needed, r.channel, r.spindle) for r in requests(bench)]
     assert described == [
         ("M", 8, 2, True, "channel", ""),
         ("M", 9, 3, True, "channel", ""),
         ("T", 3, 4, False, "channel", ""),
-        ("D", 4, 4, False, "channel", ""),
+        ("D", 2, 4, False, "channel", ""),
     ]
     assert [request.id for request in requests(bench)] == [1, 2, 3, 4]
     for block in bench.blocks["channel"]:

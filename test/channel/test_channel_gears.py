@@ -213,15 +213,3 @@ def test_a_positioning_above_the_active_gear_is_found_when_the_program_is_read()
         "(P-AXIS-00212)"
     ]
     assert set(bench.column("x", "set_position")) == {0.0}
-
-
-def test_a_tool_without_a_record_is_told() -> None:
-    bench = run("D1\nD7 T3\nD0\nG01 X1 F3000", MILL)
-    assert [(event.error_id, event.text, event.line) for event in bench.events if event.error_id == 22027] == [
-        (
-            22027,
-            "channel channel: D7 in line 3 has no record wz[7] in the machine file, no data of the tool apply. "
-            "Known: D1, D2",
-            3,
-        )
-    ]

@@ -21,7 +21,7 @@ from channel_spindle_support import (
 )
 from machine_support import MILL, MachineBench
 
-from cnc_ptp.parameters import MachineParameters, ToolLimits
+from cnc_ptp.parameters import MachineParameters, Tool, ToolLimits, ToolTable
 from cnc_ptp.protocol.channel_states import ChannelStateCode as C
 
 # ---------------------------------------------------------------- several spindles of one channel
@@ -220,7 +220,9 @@ def test_beside_a_plc_spindle_an_nc_spindle_turns() -> None:
 
 def test_a_tool_gives_its_limits_to_the_spindle_that_carries_it() -> None:
     tools = {5: ToolLimits("s", 10.0, 500.0, 3000.0), 6: ToolLimits("t", None, 100.0, None)}
-    bench = run("T5 D5\nM3 S2000\nG04 1\nT6 D6\nD0\nD7\nM5\nS[DEFAULT_DYNAMIC_DATA]", machine_of(*three(), tools=tools))
+    table = ToolTable({number: Tool(number) for number in (5, 6, 7)}, complete=True)
+    machine = machine_of(*three(), tools=tools, tool_table=table)
+    bench = run("T5 D5\nM3 S2000\nG04 1\nT6 D6\nD0\nD7\nM5\nS[DEFAULT_DYNAMIC_DATA]", machine)
     assert told(bench)[0] == (
         "set_limits",
         {"min_speed_rpm": 10.0, "max_speed_rpm": 500.0, "max_acceleration": 3000.0},

@@ -97,6 +97,12 @@ def test_a_request_says_what_it_has():
         ("spindle", "stop", ["own=on"], "unknown argument 'own'"),
         ("axis", "fly", [], "22002 axis u: unknown command 'fly'; nothing was sent. Known: "),
         ("axis", "jog", ["5"], "22002 axis u: jog has no service, use: cnc_ptp jog u + --speed ..."),
+        (
+            "axis",
+            "move_absolut",
+            [],
+            "unknown command 'move_absolut'; did you mean move_absolute?; nothing was sent. Known: ",
+        ),
         ("axis", "lead", [], "22002 axis u: unknown command 'lead'; nothing was sent. Known: "),
         (
             "channel",

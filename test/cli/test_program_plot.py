@@ -11,11 +11,15 @@ import pytest
 from click.testing import CliRunner, Result
 
 from cnc_ptp import cli
+from cnc_ptp.commands.look import program_plot
+from cnc_ptp.parameters import read_machine
 from cnc_ptp.plots import program_page
 from cnc_ptp.plots.path_figures import path_axes
 from cnc_ptp.plots.program_run import ProgramRun, program_run
 from cnc_ptp.recording.reader import Recorded, read_recording
+from cnc_ptp.recording.rows import SET
 from cnc_ptp.recording.statistics import axis_units
+from cnc_ptp.recording.surfaces import surfaces
 
 MILL = "config/mill.yaml"
 SQUARE = """%P
@@ -238,6 +242,20 @@ def test_face_machining_is_drawn_in_its_coordinates(tmp_path: Path) -> None:
     assert "<h2>Front face</h2>" in text
     assert "Set positions in Cartesian coordinates of the face" in text
     assert "<h2>Lateral surface" not in text
+
+
+def test_the_face_of_another_main_spindle(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """#MAIN SPINDLE [S2]: the line from (20, 0) to (0, 20) is drawn by its angle."""
+    drawn: list[Recorded] = []
+    monkeypatch.setattr(program_plot, "program_page", lambda recorded, *_, **__: drawn.append(recorded) or "")
+    program = tmp_path / "face.nc"
+    program.write_text(FACE.replace("M19", "#MAIN SPINDLE [S2]\nM19"))
+    assert call("plot", program, "--machine", "config/lathe.yaml").exit_code == 0
+    [face] = surfaces(drawn[0], read_machine("config/lathe.yaml"), SET)
+    x, y = face.points
+    between = (x > 1.0) & (y > 1.0)
+    assert between.sum() > 100
+    assert abs(x + y - 20.0)[between].max() < 1e-9
 
 
 def test_programs_without_kinematics_have_no_such_section(folder: Path, tmp_path: Path) -> None:

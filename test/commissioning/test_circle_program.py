@@ -10,12 +10,13 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.nc.canonical import CircularMove
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.parser import parse_program
+from cnc_ptp.nc.plain_channel import plain_channel
 
 AXES = ("X", "Y", "Z")
 
 
 def circles_of(program):
-    blocks = list(interpret(parse_program(program.text, "circle.nc"), (0.0, 0.0, 0.0), AXES, ("S",)))
+    blocks = list(interpret(parse_program(program.text, "circle.nc"), (0.0, 0.0, 0.0), plain_channel(AXES)))
     return [(block.source.line, block.motion) for block in blocks if isinstance(block.motion, CircularMove)]
 
 

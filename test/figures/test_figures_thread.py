@@ -17,7 +17,8 @@ PROGRAM = "%P\nN10 G01 X5 F1000\nM30\n"
 
 
 def passes(name: str) -> list[ThreadPass]:
-    return thread_passes(recorded(read_head(SCENARIOS / f"{name}.yaml"), run_of(name)))
+    run = run_of(name)
+    return thread_passes(recorded(read_head(SCENARIOS / f"{name}.yaml"), run), run.machine)
 
 
 def test_five_passes_lie_in_one_groove() -> None:

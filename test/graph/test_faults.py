@@ -2,16 +2,15 @@
 
 import pytest
 import rclpy
-from graph_support import MILL, PTP, one_axis_machine, run
+from graph_support import MILL, PTP, run
 from rclpy.node import Node
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
-from cnc_ptp.nodes import process, supervisor
+from cnc_ptp.nodes import process
 from cnc_ptp.nodes.clock import ClockNode
 from cnc_ptp.nodes.monitor import RunMonitor
 from cnc_ptp.nodes.recorder import RecorderNode, require_writable
-from cnc_ptp.nodes.supervisor import RunOptions, Supervisor
 from cnc_ptp.nodes.topics import BLOCKS, EVENT, EVENTS, REPORT, TICK, block_topic
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import PlcBlock, Severity
@@ -132,18 +131,6 @@ def test_a_fault_in_the_last_block_fails_the_run(around):
     assert not monitor.run_failed, "it was reset before"
     fault(10, 2)
     assert monitor.run_failed
-
-
-def test_nodes_that_do_not_find_each_other_end_the_run(tmp_path, monkeypatch):
-    """Sooner than any process can be there."""
-    monkeypatch.setattr(supervisor, "START_TIMEOUT", 0.1)
-    machine = str(one_axis_machine(tmp_path))
-    run_of = Supervisor(read_machine(machine), RunOptions(machine), show=lambda monitor: None)
-    run_of.run()
-    assert run_of.failures == [
-        "P-ERR-26105 the nodes did not find each other within 0.1 s (not there: x, plc, clock); the run ends"
-    ]
-    assert all(child.exitcode is not None for child in run_of._processes.values())
 
 
 def test_looking_whether_a_recording_can_be_written_changes_nothing(tmp_path):

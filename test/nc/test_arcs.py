@@ -112,6 +112,22 @@ def test_extreme_points_bound_the_arc(c0, c1, radius, angle, sweep, clockwise, r
         assert math.dist(point[:2], (c0, c1)) == pytest.approx(radius, abs=1e-9)
 
 
+@given(angles, sweeps, st.booleans(), st.sampled_from([(0, 1), (2, 0), (1, 2)]))
+def test_extreme_points_of_a_plane_are_those_of_its_directions(angle, sweep, clockwise, plane):
+    """A tilted plane is computed with the directions of its axes; here they are those of the machine."""
+    begin, end, turn = circle((3.0, -2.0), 7.0, angle, sweep, clockwise)
+    start, target = [1.0] * 3, [4.0] * 3
+    start[plane[0]], start[plane[1]] = begin
+    target[plane[0]], target[plane[1]] = end
+    units = [tuple(float(axis == each) for axis in range(3)) for each in plane]
+    move = CircularMove(tuple(target), (3.0, -2.0), plane, 7.0, turn, 1.0)
+    expected = extreme_points(tuple(start), move._replace(directions=tuple(units)))
+    found = extreme_points(tuple(start), move)
+    assert len(found) == len(expected)
+    for one, other in zip(found, expected, strict=True):
+        assert one == pytest.approx(other, abs=1e-9)
+
+
 def test_full_circle_by_centre_alone():
     assert lines("G02 I10 F600") == ["arc (0, 0, 0) plane 01 center (10, 0) radius 10 sweep -360 feed 10"]
     assert lines("G03 X0 Y0 J-5 F600") == ["arc (0, 0, 0) plane 01 center (0, -5) radius 5 sweep 360 feed 10"]

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from nc_support import HERE, machine, tools, turning_axes, vocabulary_of
+from nc_support import HERE, channel_of, vocabulary_of
 
 from cnc_ptp.commands.look import check as check_module
 from cnc_ptp.errors import CncError
@@ -45,13 +45,8 @@ M30
 
 
 def stream(program, text: str) -> list[str]:
-    axes, spindles = machine(text)
-    return [
-        format_block(block)
-        for block in interpret(
-            program, (0.0,) * len(axes), axes, spindles, tools=tools(text), turning_axes=turning_axes(text)
-        )
-    ]
+    channel = channel_of(text)
+    return [format_block(block) for block in interpret(program, (0.0,) * len(channel.axes), channel)]
 
 
 @pytest.mark.parametrize("ending", ["\n", "\r\n"])

@@ -8,8 +8,9 @@ from nc_support import lines, run
 
 from cnc_ptp.nc.canonical import AxisFeedforward, CompensationSwitch, LinearMove, SpindleFeedforward
 from cnc_ptp.nc.interpreter import interpret
+from cnc_ptp.nc.modal_state import ModalState
 from cnc_ptp.nc.parser import parse_program
-from cnc_ptp.nc.program import ModalState
+from cnc_ptp.nc.plain_channel import plain_channel
 
 AXES = ("X", "Y", "Z")
 percents = st.integers(0, 100_000).map(lambda value: value / 1000.0)
@@ -80,7 +81,7 @@ def test_functions_of_manual_blocks_leave_the_modal_state_alone():
     state = ModalState(position=(0.0, 0.0, 0.0), path=1, feed=5.0, programmed=(0.0, 0.0, 0.0))
     before = state.copy()
     program = parse_program("G135 G136 X50 S[G135] X[COMP OFF FRICT]", "mdi", mdi=True)
-    list(interpret(program, (0.0, 0.0, 0.0), AXES, state=state))
+    list(interpret(program, (0.0, 0.0, 0.0), plain_channel(AXES), state=state))
     assert state == before
 
 

@@ -8,9 +8,10 @@ from hypothesis import strategies as st
 from nc_support import lines, run
 
 from cnc_ptp.nc.faults import ProgramError
-from cnc_ptp.nc.flow.execution import Limits
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.parser import parse_program
+from cnc_ptp.nc.plain_channel import plain_channel
+from cnc_ptp.nc.program import Limits
 
 
 def value(expression: str, before: str = "") -> float:
@@ -47,9 +48,9 @@ def test_an_expression_has_the_value_that_python_gives_it(both):
         expected = eval(python)  # of our own text
     except ZeroDivisionError:
         with pytest.raises(ProgramError, match="division by 0"):
-            list(interpret(program, (0.5,), ("X",)))
+            list(interpret(program, (0.5,), plain_channel("X")))
         return
-    targets = [block.motion.target[0] for block in interpret(program, (math.pi,), ("X",)) if block.motion]
+    targets = [block.motion.target[0] for block in interpret(program, (math.pi,), plain_channel("X")) if block.motion]
     assert targets == [expected]
 
 
@@ -124,7 +125,7 @@ def test_words_with_expressions_are_checked_as_words_with_numbers():
 def test_programs_that_read_what_the_run_knows_wait_for_the_path():
     program = parse_program("G00 X10\nX[V.A.ACT_POS.Y * 2]\nM30", "a.nc")
     with pytest.raises(ProgramError) as refused:
-        list(interpret(program, (0.0, 0.0), ("X", "Y")))
+        list(interpret(program, (0.0, 0.0), plain_channel("XY")))
     assert str(refused.value) == (
         "P-ERR-21438 a.nc line 2 column 1 'X[V.A.ACT_POS.Y * 2]': the line reads what is known only while the program runs"
     )
@@ -133,7 +134,7 @@ def test_programs_that_read_what_the_run_knows_wait_for_the_path():
 @pytest.mark.parametrize("count", [9, 10])
 def test_the_limit_of_repeats_is_a_parameter(count):
     program = parse_program(f"$FOR P1 = 0, {count}, 1\n$ENDFOR\nM30", "a.nc")
-    blocks = interpret(program, (0.0,), ("X",), limits=Limits(repeats=9))
+    blocks = interpret(program, (0.0,), plain_channel("X")._replace(limits=Limits(repeats=9)))
     if count == 10:
         with pytest.raises(ProgramError, match="repeated lines 9 times"):
             list(blocks)

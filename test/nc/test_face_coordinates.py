@@ -71,7 +71,7 @@ def test_behind_the_face_the_plane_is_that_of_the_axes_again() -> None:
 
 def test_diameters_do_not_count_on_the_face() -> None:
     """Words of X are Cartesian there; on the cylinder X is an axis, so they do."""
-    options = {"axes": LATHE, "spindles": TABLES["c_axis"], "turning_axes": FACING["X"]}
+    options = {"axes": LATHE, "spindles": TABLES["c_axis"], "turning": FACING["X"]}
     for command, x in ((FACE, 20.0), (CYLINDER, 10.0)):
         text = f"G18 G51\n#CAX\nG00 X60 Z30\n{command}\nG01 X20 F300\nM30"
         targets = [block.motion.target[0] for block in run(text, **options) if block.motion is not None]

@@ -6,14 +6,14 @@ import pytest
 from nc_support import lines, run
 
 from cnc_ptp.nc.canonical import LinearMove, WaitForPath
+from cnc_ptp.nc.check import check
 from cnc_ptp.nc.expressions.values import Values
 from cnc_ptp.nc.faults import ProgramError
-from cnc_ptp.nc.interpreter import CENTRE_OFFSET, CENTRE_OFFSET_RATIO, check, interpret
+from cnc_ptp.nc.interpreter import interpret
+from cnc_ptp.nc.modal_state import ModalState
 from cnc_ptp.nc.parser import parse_program
-from cnc_ptp.nc.program import Channel, ModalState
+from cnc_ptp.nc.plain_channel import plain_channel
 from cnc_ptp.nc.program_text import ProgramText
-from cnc_ptp.nc.spindles import spindle_table
-from cnc_ptp.nc.vocabulary import TWINCAT
 
 AXES = ("X", "Y", "Z")
 
@@ -21,11 +21,11 @@ AXES = ("X", "Y", "Z")
 def running(text: str) -> list[object]:
     """Targets and pauses of a program whose actual positions are the programmed ones plus 0.5 at each pause."""
     program = parse_program(text, "a.nc", mdi=True, files={"up.nc": "G91 Y[@P1]\nM29"})
-    channel = Channel(AXES, {"X": 0, "Y": 1, "Z": 2}, spindle_table(()), CENTRE_OFFSET, CENTRE_OFFSET_RATIO, TWINCAT)
+    channel = plain_channel(AXES, ())
     state = ModalState()
     values = Values(channel, state)
     found: list[object] = []
-    for block in interpret(program, (0.0,) * 3, AXES, (), state=state, values=values, runs=True):
+    for block in interpret(program, (0.0,) * 3, channel, state=state, values=values, runs=True):
         if any(isinstance(function, WaitForPath) and function.awaited for function in block.functions):
             values.actual = tuple(position + 0.5 for position in state.position)
             found.append("pause")
@@ -56,7 +56,7 @@ def test_the_path_stands_each_time_before_what_only_the_run_knows(text, expected
 
 
 def test_a_flush_is_no_reason_to_check_less():
-    assert [error.number for error in check("#FLUSH WAIT\nX[1/0]\nM30", "a.nc", AXES)] == [20396]
+    assert [error.number for error in check("#FLUSH WAIT\nX[1/0]\nM30", "a.nc", plain_channel(AXES))] == [20396]
 
 
 def test_the_block_with_m29_belongs_to_its_cycle():
@@ -153,7 +153,7 @@ def test_targets_are_numbers_after_many_relative_words():
 @pytest.mark.parametrize("word", ["$BREAK", "$ELSE", "M29"])
 def test_errors_of_structure_behind_the_lines_that_are_kept(word):
     text = "\n" * (ProgramText.kept + 1) + word + "\nM30"
-    (error,) = check(text, "a.nc", AXES)
+    (error,) = check(text, "a.nc", plain_channel(AXES))
     assert error.line == ProgramText.kept + 2
 
 
@@ -201,4 +201,4 @@ def test_a_subroutine_may_ask_for_parameters_by_their_number():
 
 def test_a_line_that_cannot_be_read_is_no_fault_of_its_callers():
     text = "%L SUB\nX[@GAP] )\nM29\n%MAIN\nLL CYCLE [NAME=SUB @GAP=5]\nM30"
-    assert [error.number for error in check(text, "a.nc", AXES)] == [21007]
+    assert [error.number for error in check(text, "a.nc", plain_channel(AXES))] == [21007]

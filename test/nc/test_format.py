@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
-from nc_support import HERE, machine, tools, turning_axes, vocabulary_of
+from nc_support import HERE, channel_of
 
 from cnc_ptp.cli import main
 from cnc_ptp.commands.language.format import format_text
@@ -17,15 +17,10 @@ GOOD = sorted((HERE / "golden").glob("*.nc"))
 
 
 def stream(text: str, name: str) -> list[str]:
-    axes, spindles = machine(text)
+    channel = channel_of(text)
     files = called_programs(text, [str(HERE / "library")])
-    program = parse_program(text, name, files=files, vocabulary=vocabulary_of(text))
-    return [
-        format_block(block)
-        for block in interpret(
-            program, (0.0,) * len(axes), axes, spindles, tools=tools(text), turning_axes=turning_axes(text)
-        )
-    ]
+    program = parse_program(text, name, files=files, vocabulary=channel.vocabulary)
+    return [format_block(block) for block in interpret(program, (0.0,) * len(channel.axes), channel)]
 
 
 @pytest.mark.parametrize("path", GOOD, ids=lambda path: path.stem)
@@ -127,13 +122,3 @@ def test_the_commands(tmp_path: Path) -> None:
     file.write_text("g1x1q\nm30\n")
     done = run.invoke(main, ["format", str(file)])
     assert done.exit_code == 2 and file.read_text() == "g1x1q\nm30\n"
-    file.write_text("G00 X1\nX[V.A.ACT_POS.Y]\nX5\nM30\n")
-    told = run.invoke(main, ["check", "--canonical", str(file)]).output.splitlines()
-    assert told == [
-        "1:N0 | rapid (1, 0, 0)",
-        "2:N0 | wait for the path",
-        "what follows is known only while the program runs",
-    ]
-    mill = str(HERE.parents[1] / "config" / "mill.yaml")
-    told = run.invoke(main, ["check", "--canonical", "--machine", mill, str(file)]).output.splitlines()
-    assert told[-1] == "what follows is known only while the program runs"

@@ -1,16 +1,16 @@
 """Good programs against their golden canonical streams, bad ones against the exact error text in their first line."""
 
 import pytest
-from nc_support import HERE, files_of, machine, tools, turning_axes, vocabulary_of
+from nc_support import HERE, channel_of, files_of
 
 from cnc_ptp.nc import c_axis_faults, faults, spindle_faults, thread_faults, turning_faults
 from cnc_ptp.nc.canonical_text import format_block
+from cnc_ptp.nc.check import check
 from cnc_ptp.nc.coordinates import coordinate_faults
 from cnc_ptp.nc.expressions import expression_faults
 from cnc_ptp.nc.faults import Fault, ProgramError
 from cnc_ptp.nc.flow import flow_faults
-from cnc_ptp.nc.flow.execution import Limits
-from cnc_ptp.nc.interpreter import check, interpret
+from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.iso import iso_faults
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.radius import radius_faults
@@ -44,10 +44,9 @@ FAULTS = [fault for part in PARTS for fault in faults_of(part)]
 
 
 def stream(text: str, file: str) -> list[str]:
-    axes, spindles = machine(text)
-    program = parse_program(text, file, files=files_of(text), vocabulary=vocabulary_of(text))
-    given = {"tools": tools(text), "turning_axes": turning_axes(text)}
-    blocks = interpret(program, (0.0,) * len(axes), axes, spindles, **given)
+    channel = channel_of(text)
+    program = parse_program(text, file, files=files_of(text), vocabulary=channel.vocabulary)
+    blocks = interpret(program, (0.0,) * len(channel.axes), channel)
     return [format_block(block) for block in blocks]
 
 
@@ -60,10 +59,7 @@ def test_canonical_stream_is_the_golden_one(path):
 @pytest.mark.parametrize("path", GOOD, ids=lambda path: path.stem)
 def test_check_finds_nothing_in_good_programs(path):
     text = path.read_text()
-    axes, spindles = machine(text)
-    given = {"files": files_of(text), "vocabulary": vocabulary_of(text), "tools": tools(text)}
-    given["turning_axes"] = turning_axes(text)
-    found = check(text, path.name, axes, spindles, **given)
+    found = check(text, path.name, channel_of(text), files=files_of(text))
     assert [error for error in found if error.number != faults.ORDERED.number] == []
 
 
@@ -84,10 +80,7 @@ def test_bad_program_raises_the_text_of_its_first_line(path):
 @pytest.mark.parametrize("path", BAD, ids=lambda path: path.stem)
 def test_check_finds_the_same_error(path):
     text = path.read_text()
-    axes, spindles = machine(text)
-    given = {"files": files_of(text), "vocabulary": vocabulary_of(text), "tools": tools(text)}
-    given["turning_axes"] = turning_axes(text)
-    found = [str(error) for error in check(text, path.name, axes, spindles, **given)]
+    found = [str(error) for error in check(text, path.name, channel_of(text), files=files_of(text))]
     assert text.split("\n")[0].removeprefix("; ") in found
 
 
@@ -100,21 +93,6 @@ def test_every_fault_has_a_bad_program():
         expression_faults.ONLY_WHILE_RUNNING.number,
         coordinate_faults.SCALE_ROTARY.number,
     }
-
-
-@pytest.mark.parametrize(
-    "loop", ["$WHILE 1\nX1 X0\n$ENDWHILE", "N1: $GOTO N1", "$FOR P1=0,9,0.001\n$ENDFOR", "$DO\n$ENDDO 1"]
-)
-def test_a_loop_without_an_end_is_refused(loop):
-    last = loop.splitlines()[-1]
-    with pytest.raises(ProgramError) as caught:
-        list(
-            interpret(
-                parse_program(loop.replace(" X0", "") + "\nM30", "a.nc"), (0.0,), ("X",), limits=Limits(repeats=50)
-            )
-        )
-    reason = "the program has repeated lines 50 times: does it have a loop without an end?"
-    assert str(caught.value) == f"P-ERR-21578 a.nc line {loop.count(chr(10)) + 1} column 1 '{last}': {reason}"
 
 
 def test_fault_numbers_are_unique():

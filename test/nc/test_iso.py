@@ -11,14 +11,16 @@ from nc_support import HERE, TOOLS, lines, run
 
 from cnc_ptp.nc.blocks import plain_block
 from cnc_ptp.nc.canonical import Dwell, LinearMove, Source
+from cnc_ptp.nc.check import check
 from cnc_ptp.nc.contour import Contour, Smoothing, Transition
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.lines import Line
-from cnc_ptp.nc.interpreter import check, interpret
+from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.iso.lines import iso_line
 from cnc_ptp.nc.iso.vocabulary import ISO
+from cnc_ptp.nc.modal_state import ModalState
 from cnc_ptp.nc.parser import parse_program
-from cnc_ptp.nc.program import ModalState
+from cnc_ptp.nc.plain_channel import plain_channel
 from cnc_ptp.nc.vocabulary import TWINCAT
 from cnc_ptp.parameters import OffsetTables
 
@@ -37,7 +39,7 @@ HEADERS = [
 @pytest.mark.parametrize("header", HEADERS)
 def test_headers_run_and_do_nothing(header):
     program = parse_program(f"{header}\nM30\n%", "a.nc", vocabulary=ISO)
-    assert [block.stop for block in interpret(program, (0.0,) * 3, AXES)] == ["end"]
+    assert [block.stop for block in interpret(program, (0.0,) * 3, plain_channel(AXES))] == ["end"]
 
 
 @pytest.mark.parametrize(
@@ -166,7 +168,9 @@ def test_stop_comes_behind_all_motions_of_its_block():
 
 def test_subroutines_may_come_first():
     program = parse_program("%\nO7\nG91 G0 X1\nG90 M99\nO1\nM98 P7 L3\nM98 P0007\nM30\n%", "a.nc", vocabulary=ISO)
-    assert [block.motion.target[0] for block in interpret(program, (0.0,) * 3, AXES) if block.motion] == [1, 2, 3, 4]
+    assert [
+        block.motion.target[0] for block in interpret(program, (0.0,) * 3, plain_channel(AXES)) if block.motion
+    ] == [1, 2, 3, 4]
 
 
 def test_dwell_and_spindle_position():
@@ -212,12 +216,12 @@ def test_random_words_raise_nothing_but_program_errors(parts):
     text = " ".join(parts)
     raised = ""
     try:
-        for _ in interpret(parse_program(text, "a.nc", vocabulary=ISO), (0.0,) * 3, AXES):
+        for _ in interpret(parse_program(text, "a.nc", vocabulary=ISO), (0.0,) * 3, plain_channel(AXES)):
             pass
     except ProgramError as error:
         raised = str(error)
         assert error.caret and 1 <= error.column <= len(error.text) + 1
-    found = [str(error) for error in check(text, "a.nc", AXES, vocabulary=ISO)]
+    found = [str(error) for error in check(text, "a.nc", plain_channel(AXES, vocabulary=ISO))]
     assert raised in found if raised else found == []
 
 

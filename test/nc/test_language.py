@@ -6,14 +6,17 @@ from nc_support import lines, run
 from cnc_ptp.errors import CncError
 from cnc_ptp.nc.canonical import AuxiliaryFunction, CanonicalBlock, LinearMove, Source
 from cnc_ptp.nc.canonical_text import format_block
+from cnc_ptp.nc.check import check
 from cnc_ptp.nc.faults import ProgramError
-from cnc_ptp.nc.flow.execution import Limits
-from cnc_ptp.nc.interpreter import check, interpret
+from cnc_ptp.nc.interpreter import interpret
+from cnc_ptp.nc.modal_state import ModalState
 from cnc_ptp.nc.parser import parse_program
-from cnc_ptp.nc.program import ModalState
+from cnc_ptp.nc.plain_channel import plain_channel
+from cnc_ptp.nc.program import Limits
 from cnc_ptp.nc.vocabulary import TWINCAT
 
 AXES = ("X", "Y", "Z")
+CHANNEL = plain_channel(AXES)
 
 
 @pytest.mark.parametrize(
@@ -225,11 +228,8 @@ def test_empty_text_is_no_program():
 
 def test_mdi_continues_from_its_state():
     state = ModalState()
-    spindles = ("S",)
-    first = list(
-        interpret(parse_program("G01 X10 F600 S100", "mdi", mdi=True), (0.0,) * 3, AXES, spindles, state=state)
-    )
-    second = list(interpret(parse_program("Y5 M03", "mdi", mdi=True), state.position, AXES, spindles, state=state))
+    first = list(interpret(parse_program("G01 X10 F600 S100", "mdi", mdi=True), (0.0,) * 3, CHANNEL, state=state))
+    second = list(interpret(parse_program("Y5 M03", "mdi", mdi=True), state.position, CHANNEL, state=state))
     assert [format_block(block) for block in first + second] == [
         "1:N0 | S[REV100] | line (10, 0, 0) feed 10",
         "1:N0 | S[M3 REV100] | line (10, 5, 0) feed 10",
@@ -238,7 +238,7 @@ def test_mdi_continues_from_its_state():
 
 def test_mdi_starts_where_the_axes_stand():
     state = ModalState(position=(1.0, 2.0, 3.0), path=1, feed=2.0)
-    blocks = list(interpret(parse_program("G91 X1", "mdi", mdi=True), (7.0, 8.0, 9.0), AXES, ("S",), state=state))
+    blocks = list(interpret(parse_program("G91 X1", "mdi", mdi=True), (7.0, 8.0, 9.0), CHANNEL, state=state))
     assert blocks[0].motion == LinearMove((8.0, 8.0, 9.0), False, 2.0)
 
 
@@ -252,7 +252,7 @@ def test_state_copy_is_independent():
 
 def test_interpreter_is_lazy():
     """Blocks before an error come out, so a channel that wants to know before it moves must read ahead or check."""
-    stream = interpret(parse_program("G00 X1\nG01 X2\nM30", "a.nc"), (0.0,) * 3, AXES)
+    stream = interpret(parse_program("G00 X1\nG01 X2\nM30", "a.nc"), (0.0,) * 3, CHANNEL)
     assert next(stream).motion == LinearMove((1.0, 0.0, 0.0), True, 0.0)
     with pytest.raises(ProgramError, match="G01 without a feed"):
         next(stream)
@@ -284,7 +284,7 @@ def test_veto_of_an_arc_between_its_ends():
 
 def test_check_collects_syntax_errors_and_the_modal_error_before_them():
     text = "G01 X1\nG0 X2 E5 E6\nG05\nX3 X4\n#VAR\nM30"
-    assert [(error.line, error.number) for error in check(text, "a.nc", AXES)] == [
+    assert [(error.line, error.number) for error in check(text, "a.nc", CHANNEL)] == [
         (1, 20008),
         (2, 21002),
         (3, 20131),
@@ -295,24 +295,24 @@ def test_check_collects_syntax_errors_and_the_modal_error_before_them():
 
 
 def test_check_does_not_guess_behind_a_syntax_error():
-    assert [error.line for error in check("G01 X1 F60O\nX2\nM30", "a.nc", AXES)] == [1]
+    assert [error.line for error in check("G01 X1 F60O\nX2\nM30", "a.nc", CHANNEL)] == [1]
 
 
 def test_check_reports_structure_and_line_once():
     text = "%L UP\nLL NOWHERE\n%MAIN\nLL UP\nM29"
-    found = [(error.line, error.number) for error in check(text, "a.nc", AXES)]
+    found = [(error.line, error.number) for error in check(text, "a.nc", CHANNEL)]
     assert found == [(2, 21017), (5, 21018)]
 
 
 def test_check_takes_start_limits_and_veto():
     text = "G91 G00 X1\nM30"
-    assert check(text, "a.nc", AXES, start=(1.0, 0.0, 0.0), check_target=veto(2.0)) == []
+    assert check(text, "a.nc", CHANNEL, start=(1.0, 0.0, 0.0), check_target=veto(2.0)) == []
     with pytest.raises(CncError):
-        check(text, "a.nc", AXES, start=(1.5, 0.0, 0.0), check_target=veto(2.0))
+        check(text, "a.nc", CHANNEL, start=(1.5, 0.0, 0.0), check_target=veto(2.0))
     arc = "G02 X10 I5.01 F60\nM30"
-    assert check(arc, "a.nc", AXES) == []
-    assert [error.number for error in check(arc, "a.nc", AXES, centre_offset=0.005)] == [21035]
-    assert [error.number for error in check(arc, "a.nc", AXES, centre_offset_ratio=0.001)] == [21035]
+    assert check(arc, "a.nc", CHANNEL) == []
+    assert [error.number for error in check(arc, "a.nc", CHANNEL._replace(centre_offset=0.005))] == [21035]
+    assert [error.number for error in check(arc, "a.nc", CHANNEL._replace(centre_offset_ratio=0.001))] == [21035]
 
 
 def test_format_block_rounds_to_six_decimals():

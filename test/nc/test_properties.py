@@ -9,10 +9,12 @@ from nc_support import run
 from cnc_ptp.nc.blocks import careful_line, plain_block
 from cnc_ptp.nc.canonical import LinearMove, Source
 from cnc_ptp.nc.canonical_text import format_block
+from cnc_ptp.nc.check import check
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.lines import Line
-from cnc_ptp.nc.interpreter import check, interpret
+from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.parser import parse_program
+from cnc_ptp.nc.plain_channel import plain_channel
 from cnc_ptp.nc.vocabulary import TWINCAT
 
 AXES = ("X", "Y", "Z")
@@ -51,7 +53,7 @@ def test_any_spelling_gives_the_same_end_points(path, seed):
             draw.choice(["", f"N{number}0", " n7 "]) + draw.choice([" ", "  "]) + "".join(row) + draw.choice(["", ";"])
         )
     program = parse_program("\n".join([*rows, "m30"]), "path.nc")
-    blocks = list(interpret(program, (0.5e-3, 0.0, 0.0), AXES))
+    blocks = list(interpret(program, (0.5e-3, 0.0, 0.0), plain_channel(AXES)))
     assert [block.motion for block in blocks[:-1]] == [
         LinearMove(point, False, float(number))
         for number, (before, point) in enumerate(zip([None, *path], path, strict=False), start=1)
@@ -92,7 +94,7 @@ def test_random_words_raise_nothing_but_program_errors(parts):
 def test_check_finds_the_error_that_a_run_raises(parts):
     text = " ".join(parts)
     raised = first_error(text)
-    found = [str(error) for error in check(text, "a.nc", AXES)]
+    found = [str(error) for error in check(text, "a.nc", plain_channel(AXES))]
     assert (raised is None) == (found == [])
     if raised is not None:
         assert raised in found
@@ -100,7 +102,7 @@ def test_check_finds_the_error_that_a_run_raises(parts):
 
 def first_error(text: str) -> str | None:
     try:
-        for _ in interpret(parse_program(text, "a.nc"), (0.0, 0.0, 0.0), AXES):
+        for _ in interpret(parse_program(text, "a.nc"), (0.0, 0.0, 0.0), plain_channel(AXES)):
             pass
     except ProgramError as error:
         return str(error)
@@ -117,5 +119,5 @@ def survives(text: str) -> None:
         assert error.caret
         assert 1 <= error.column <= len(error.text) + 1
         assert 1 <= error.line <= text.count("\n") + text.count("\r") + 1
-    for error in check(text, "a.nc", AXES):
+    for error in check(text, "a.nc", plain_channel(AXES)):
         assert str(error).startswith(f"P-ERR-{error.number} a.nc line {error.line} column {error.column} ")

@@ -9,12 +9,14 @@ from cnc_ptp.nc.block_search import BlockSearch, StartPoint
 from cnc_ptp.nc.canonical import BEGIN, BUSY, CircularMove, LanguageWarning, LinearMove, Source
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.interpreter import interpret
+from cnc_ptp.nc.modal_state import ModalState
 from cnc_ptp.nc.parser import parse_program
-from cnc_ptp.nc.program import ModalState
+from cnc_ptp.nc.plain_channel import plain_channel
 from cnc_ptp.nc.radius.radius_state import RadiusSettings
 from cnc_ptp.parameters import Tool, ToolTable
 
 END_MILL = ToolTable({1: Tool(radius=5.0)}, True)
+CHANNEL = plain_channel(AXES, SPINDLES)._replace(tools=END_MILL)
 SQUARE = "D1 G00 X-20 F600\nG42 G01 X0 Y0\nX40\nY40\nX0\nY0\nG40 X-20"
 
 
@@ -61,7 +63,7 @@ def test_elements_are_handed_out_when_so_many_behind_them_are_known() -> None:
     state, settings = ModalState(), RadiusSettings(look_ahead=2)
     program = parse_program(text, "a.nc")
     read = []
-    for block in interpret(program, (0.0,) * 3, AXES, SPINDLES, state=state, tools=END_MILL, radius=settings):
+    for block in interpret(program, (0.0,) * 3, CHANNEL._replace(radius=settings), state=state):
         if block.motion is not None:
             read.append((block.source.line, state.programmed[:2]))
     assert read == [
@@ -134,13 +136,13 @@ def test_texts_of_manual_blocks_end_the_compensation() -> None:
     state = ModalState()
     text = "D1 G42 G01 X0 Y0 F600\nX40"
     program = parse_program(text, "mdi", mdi=True)
-    blocks = list(interpret(program, (-20.0, 0.0, 0.0), AXES, SPINDLES, state=state, tools=END_MILL))
+    blocks = list(interpret(program, (-20.0, 0.0, 0.0), CHANNEL, state=state))
     (warning,) = blocks[-1].functions
     assert warning == LanguageWarning(21689, "the tool radius is still compensated (G42) at the end of the program")
     assert not state.radius_compensation.on
     place = blocks[-2].motion.target  # type: ignore[union-attr]
     second = parse_program("Y10", "mdi", mdi=True)
-    (block,) = interpret(second, place, AXES, SPINDLES, state=state, tools=END_MILL)
+    (block,) = interpret(second, place, CHANNEL, state=state)
     assert isinstance(block.motion, LinearMove) and block.motion.target == (40.0, 10.0, 0.0)
 
 

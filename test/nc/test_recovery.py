@@ -3,8 +3,9 @@
 import pytest
 
 from cnc_ptp.nc.canonical import Source
+from cnc_ptp.nc.check import check
 from cnc_ptp.nc.faults import ProgramError
-from cnc_ptp.nc.interpreter import check
+from cnc_ptp.nc.plain_channel import plain_channel
 from cnc_ptp.nc.recovery import DEPENDS, ENOUGH, READS
 
 AXES = ("X", "Y", "Z")
@@ -12,7 +13,9 @@ AXES = ("X", "Y", "Z")
 
 def found(text: str, **options) -> list[tuple[int, int, str]]:
     """Number and line of each error, and why nothing behind it was checked."""
-    return [(error.number, error.line, error.unchecked) for error in check(text, "a.nc", AXES, **options)]
+    return [
+        (error.number, error.line, error.unchecked) for error in check(text, "a.nc", plain_channel(AXES), **options)
+    ]
 
 
 def test_independent_errors_of_blocks_are_all_found() -> None:
@@ -41,7 +44,7 @@ def test_behind_a_line_that_cannot_be_read_the_check_goes_on() -> None:
 )
 def test_it_ends_where_values_or_the_order_of_lines_depend_on_the_error(line: str) -> None:
     closing = "$ENDIF\n" if "$IF" in line else ""
-    (error,) = check(f"G00 X1\n{line}\n{closing}X[1/0]\nM30", "a.nc", AXES)
+    (error,) = check(f"G00 X1\n{line}\n{closing}X[1/0]\nM30", "a.nc", plain_channel(AXES))
     assert (error.line, error.unchecked) == (2, DEPENDS)
 
 
@@ -68,7 +71,7 @@ def test_positions_beyond_a_limit_count_once_and_the_path_goes_on_from_there() -
 
 def test_an_ordered_error_that_is_reached_is_an_error() -> None:
     text = "%L DEEP\n#ERROR [ID=455 PV1=P1]\nM29\n%\nP1 = 2\n$IF P1 > 1\nLL DEEP\n$ELSE\n#ERROR [ID=7]\n$ENDIF\nM30"
-    (error,) = check(text, "a.nc", AXES)
+    (error,) = check(text, "a.nc", plain_channel(AXES))
     reason = "#ERROR 455 of the program: PV1 = 2; the program is aborted there"
     assert str(error) == f"P-ERR-22029 a.nc line 2 column 1 '#ERROR [ID=455 PV1=P1]': {reason}"
     assert error.calls == ["a.nc line 7"]

@@ -13,8 +13,10 @@ from cnc_ptp.nc import gears
 from cnc_ptp.nc.canonical import GearChange, SpindleFunction
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.interpreter import interpret
+from cnc_ptp.nc.modal_state import ModalState, Pair
 from cnc_ptp.nc.parser import parse_program
-from cnc_ptp.nc.program import ModalState, Pair, Spindle, SpindleTable
+from cnc_ptp.nc.plain_channel import plain_channel
+from cnc_ptp.nc.program import Spindle, SpindleTable
 
 
 @pytest.mark.parametrize("position", ["S.POS180", "S.POS 180", "S.POS=180", "S. POS = 180.0", "s.pos=+180"])
@@ -96,7 +98,7 @@ def test_automatic_selection_keeps_the_gear_or_takes_the_first_that_fits(
     """2.8.2: no change while the speed fits, else the first of the table from the given side, else an error."""
     table = SpindleTable((Spindle("S", "S1", 6, tuple(ranges), from_top, True, active),), "S", True)
     program = parse_program("\n".join(f"S{speed}" for speed in speeds), "gears.nc", mdi=True)
-    blocks = interpret(program, (0.0,), ("X",), table)
+    blocks = interpret(program, (0.0,), plain_channel("X", table))
     if all(high == 0.0 for _, high in ranges):
         assert all(len(block.functions) == 1 for block in blocks)
         return

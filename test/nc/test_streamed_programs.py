@@ -3,12 +3,13 @@
 from pathlib import Path
 
 import pytest
-from nc_support import HERE, files_of, machine, tools, turning_axes, vocabulary_of
+from nc_support import HERE, channel_of, files_of, vocabulary_of
 
 from cnc_ptp.nc.canonical import BUSY, CanonicalBlock, LinearMove
 from cnc_ptp.nc.canonical_text import format_block
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.interpreter import interpret
+from cnc_ptp.nc.plain_channel import plain_channel
 from cnc_ptp.nc.streamed_program import LINES_AT_ONCE, StreamedProgram, stream_program
 
 GOOD = sorted((HERE / "golden").glob("*.nc"))
@@ -29,15 +30,13 @@ def opened(text: str, file: str = "a.nc") -> StreamedProgram:
 
 
 def stream(text: str, file: str) -> list[str]:
-    axes, spindles = machine(text)
-    blocks = interpret(
-        opened(text, file), (0.0,) * len(axes), axes, spindles, tools=tools(text), turning_axes=turning_axes(text)
-    )
+    channel = channel_of(text)
+    blocks = interpret(opened(text, file), (0.0,) * len(channel.axes), channel)
     return [format_block(block) for block in blocks]
 
 
 def run(text: str) -> list[CanonicalBlock]:
-    return list(interpret(opened(text), (0.0, 0.0), ("X", "Y"), runs=True))
+    return list(interpret(opened(text), (0.0, 0.0), plain_channel("XY"), runs=True))
 
 
 def targets(blocks: list[CanonicalBlock]) -> list[float]:
@@ -69,7 +68,7 @@ def test_bad_program_raises_the_text_of_its_first_line(path: Path) -> None:
 def test_nothing_is_read_before_it_is_needed() -> None:
     program = opened("%L UP\nX1\nM29\n%MAIN\nG00 X2\nLL UP\nX1 Q\nM30")
     assert program.lines == 4
-    stream_of = interpret(program, (0.0,), ("X",))
+    stream_of = interpret(program, (0.0,), plain_channel("X"))
     assert next(stream_of).source.line == 5 and program.lines == 5
     assert next(stream_of).source.line == 2 and program.lines == 6
     with pytest.raises(ProgramError, match=r"a.nc line 7 column 4 'X1 Q'"):
@@ -105,7 +104,7 @@ def test_a_loop_over_more_lines_than_are_kept() -> None:
 def test_how_much_was_executed_never_decreases() -> None:
     text = "G00 X1\n$FOR P1 = 1, 3, 1\nX2\nX1\n$ENDFOR\nX5\nM30"
     program = opened(text)
-    places = [program.place() for _ in interpret(program, (0.0,), ("X",))]
+    places = [program.place() for _ in interpret(program, (0.0,), plain_channel("X"))]
     assert places == sorted(places) and places[0] == 7 and program.size == len(text)
 
 
@@ -115,7 +114,7 @@ def test_structures_of_lines_that_have_been_executed_are_forgotten() -> None:
     text = "%L SUB\n$IF P1\nP3 = P3 + 1\n$ENDIF\nM29\n%MAIN\nP1 = 1\nP2 = 0\nP3 = 0\nLL SUB\n"
     text += f"{body}\n$FOR P4 = 1, 3, 1\n$IF P4 == 2\nLL SUB\n$ENDIF\n$ENDFOR\nX[P2 + P3] F1\nM30"
     program = opened(text)
-    (*_, last, _) = [block for block in interpret(program, (0.0,), ("X",)) if block is not BUSY]
+    (*_, last, _) = [block for block in interpret(program, (0.0,), plain_channel("X")) if block is not BUSY]
     assert isinstance(last.motion, LinearMove) and last.motion.target == (30_002.0,)
     assert len(program.structure_of) < 25_000
 
@@ -123,5 +122,5 @@ def test_structures_of_lines_that_have_been_executed_are_forgotten() -> None:
 def test_structures_are_kept_where_a_jump_may_lead_back() -> None:
     body = "\n".join(["$IF P1", "P2 = P2 + 1", "$ENDIF"] * 12_000)
     text = f"P1 = 1\nP2 = 0\nP3 = 0\n[AGAIN]\n{body}\nP3 = P3 + 1\n$IF P3 < 2\n$GOTO [AGAIN]\n$ENDIF\nG01 X[P2] F1\nM30"
-    blocks = [block for block in interpret(opened(text), (0.0,), ("X",)) if block is not BUSY]
+    blocks = [block for block in interpret(opened(text), (0.0,), plain_channel("X")) if block is not BUSY]
     assert targets(blocks) == [24_000.0]

@@ -13,8 +13,10 @@ from nc_support import MILLING, TOOLS, run
 from cnc_ptp.nc.canonical import Source
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.interpreter import interpret
+from cnc_ptp.nc.modal_state import ModalState
 from cnc_ptp.nc.parser import parse_program
-from cnc_ptp.nc.program import Channel, ModalState, SpindleTable
+from cnc_ptp.nc.plain_channel import plain_channel
+from cnc_ptp.nc.program import Channel, SpindleTable
 from cnc_ptp.nc.tools.compensation import cancel_length, select_length
 from cnc_ptp.nc.vocabulary import TWINCAT
 from cnc_ptp.parameters import OffsetTables, Tool, ToolTable
@@ -149,15 +151,8 @@ def test_a_copy_of_the_state_is_independent() -> None:
 
 def test_a_line_of_manual_blocks_may_follow_one_that_wrote_the_tool() -> None:
     """20738 is for one block; both texts have their line 1."""
-    state = ModalState()
+    state, channel = ModalState(), plain_channel("XYZ")._replace(tools=TOOLS["milling"])
     for text in ("V.G.WZ_AKT.L = 5", "D1", "G00 Z0"):
-        blocks = list(
-            interpret(
-                parse_program(text, "mdi", mdi=True),
-                state.position or (0.0,) * 3,
-                ("X", "Y", "Z"),
-                state=state,
-                tools=TOOLS["milling"],
-            )
-        )
+        program = parse_program(text, "mdi", mdi=True)
+        blocks = list(interpret(program, state.position or (0.0,) * 3, channel, state=state))
     assert math.isclose(blocks[-1].motion.target[2], 74.75)

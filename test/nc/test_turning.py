@@ -9,7 +9,8 @@ from nc_support import FACING, GEARS, HERE, lines, run, three_spindles
 
 from cnc_ptp.machine.program_files import called_programs
 from cnc_ptp.nc.canonical import CuttingSpeed, GearChange, SpindleFunction
-from cnc_ptp.nc.program import FacingAxis, Spindle, SpindleTable, TurningAxes
+from cnc_ptp.nc.modal_state import FacingAxis
+from cnc_ptp.nc.program import Spindle, SpindleTable, TurningAxes
 
 BEFORE = "G18 G51 F600\n"
 CONE = "@DBEGIN=20 @ZBEGIN=0 @DEND=30 @ZEND=-20"
@@ -18,7 +19,7 @@ PLANE = "@DBEGIN=40 @ZBEGIN=0 @DEND=10 @ZEND=0"
 
 def turned(text: str, turning_axes: TurningAxes = FACING["X"], **options) -> list[str]:
     files = called_programs(text, [str(HERE / "library")])
-    return lines(BEFORE + text, turning_axes=turning_axes, files=files, **options)
+    return lines(BEFORE + text, turning=turning_axes, files=files, **options)
 
 
 def cycle(begin: str, name: str, parameters: str) -> list[str]:
@@ -62,7 +63,7 @@ def test_offsets_are_radii() -> None:
 
 
 def speeds(text: str, spindles: SpindleTable) -> list[object]:
-    blocks = run(BEFORE + text, turning_axes=FACING["X"], spindles=spindles)
+    blocks = run(BEFORE + text, turning=FACING["X"], spindles=spindles)
     return [function for block in blocks for function in block.functions]
 
 

@@ -64,7 +64,8 @@ def test_values_in_mm_and_degrees() -> None:
             7: Tool(7, offsets=(0.0, 0.0, 0.0), wear=(0.0, 0.0, 0.0)),
             16: grinding._replace(length=11.0, radius=2.5),
         },
-        True,
+        present=True,
+        complete=True,
     )
 
 
@@ -85,13 +86,13 @@ def test_records_in_the_machine_file_by_the_names_of_the_lists() -> None:
     none = (0.0, 0.0, 0.0)
     first = Tool(1, 60.0, 20.0, (205.0, -0.0001, 0.0), wear=none, orientation=3, type=1, values=(0.0, 0.0, 7.0))
     second = Tool(2, 25.4, offsets=(0.0, 0.0, 90.0), wear_length=-0.254, wear=none, fixed=True, valid=False)
-    assert table == ToolTable({1: first, 2: second}, True, True, True)
+    assert table == ToolTable({1: first, 2: second}, present=True, with_t=True, at_once=True, complete=True)
 
 
 def test_records_with_limits_alone_are_no_tool_table() -> None:
     text = MACHINE.replace("werkz_data: tools.yaml", "wz.5: {log_ax_nr_spdl: 4, vb_max: 6000, a_max: 10}")
     assert load_machine(text, "m.yaml").channels["ch"].tool_table == ToolTable(
-        {5: Tool(5, offsets=(0.0,) * 3, wear=(0.0,) * 3, spindle=4)}
+        {5: Tool(5, offsets=(0.0,) * 3, wear=(0.0,) * 3, spindle=4)}, complete=True
     )
 
 

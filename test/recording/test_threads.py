@@ -19,6 +19,7 @@ from cnc_ptp.recording.writer import Recording
 from cnc_ptp.wire.block_codec import codec_of, encode_block
 from cnc_ptp.wire.stamps import Stamps
 
+NUMBERS = ("axis", "spindle")
 FIELDS = ("lead", "set_pitch_error", "actual_pitch_error", "set_phase_error_deg", "actual_phase_error_deg")
 COUNT = 30
 THREAD_BLOCKS = range(10, 20)
@@ -33,6 +34,8 @@ def run(*, threads: bool = True) -> Iterator[tuple[str, CycleBlock]]:
                 if block.first_cycle == 100:
                     values[:3] = [math.nan] * 3
                 setattr(block, f"thread_{field}", values)
+            for number, field in enumerate(NUMBERS):
+                setattr(block, f"thread_{field}", [7 + number] * 10)
         yield name, block
 
 
@@ -52,6 +55,7 @@ def test_states_of_threads_are_those_of_the_cycles_before_the_block(tmp_path):
     assert (stamps - recorded.start_ns).tolist() == [cycle * 1_000_000 for cycle in range(90, 190)]
     assert recorded.topics["/channel/thread"].type_name == "cnc_ptp/msg/ThreadState"
     assert "/channel/thread" not in recorded.states
+    assert [set(rows[name].tolist()) for name in NUMBERS] == [{7}, {8}]
 
 
 def test_encoded_blocks_give_the_same_states(tmp_path):

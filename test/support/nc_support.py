@@ -8,16 +8,10 @@ from cnc_ptp.nc.canonical import CanonicalBlock
 from cnc_ptp.nc.canonical_text import format_block
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.iso.vocabulary import ISO
+from cnc_ptp.nc.modal_state import FacingAxis, Pair
 from cnc_ptp.nc.parser import parse_program
-from cnc_ptp.nc.program import (
-    NO_TURNING_AXES,
-    FacingAxis,
-    Pair,
-    Spindle,
-    SpindleTable,
-    TurningAxes,
-    Vocabulary,
-)
+from cnc_ptp.nc.plain_channel import plain_channel
+from cnc_ptp.nc.program import NO_TURNING_AXES, Channel, Spindle, SpindleTable, TurningAxes, Vocabulary
 from cnc_ptp.nc.vocabularies import VOCABULARIES
 from cnc_ptp.parameters import NO_TOOLS, Tool, ToolTable
 
@@ -27,12 +21,17 @@ HERE = Path(__file__).parents[1] / "nc"
 
 
 def run(text: str, axes: tuple[str, ...] = AXES, **options: Any) -> list[CanonicalBlock]:
-    """All canonical blocks of a program text from position 0; the text needs no M30."""
+    """All canonical blocks of a program text from position 0; the text needs no M30.
+
+    `options`: those of `interpret`, fields of its channel, `files`, `dialect`, `spindles`.
+    """
     vocabulary = VOCABULARIES[options.pop("dialect", "twincat")]
     program = parse_program(text, "test.nc", mdi=True, files=options.pop("files", {}), vocabulary=vocabulary)
     start = options.pop("start", (0.0,) * len(axes))
-    spindles = options.pop("spindles", SPINDLES)
-    return list(interpret(program, start, axes, spindles, **options))
+    spindles, rotary = options.pop("spindles", SPINDLES), options.pop("rotary", ())
+    settings = {name: options.pop(name) for name in Channel._fields if name in options}
+    channel = plain_channel(axes, spindles, vocabulary, rotary)._replace(**settings)
+    return list(interpret(program, start, channel, **options))
 
 
 def lines(text: str, **options: Any) -> list[str]:
@@ -94,6 +93,9 @@ TOOLS = {
     "turning": ToolTable(TURNING, True),
     "with_t": ToolTable(MILLING, True, True),
     "at_once": ToolTable(MILLING, True, False, True),
+    "none": ToolTable(complete=True),
+    "with_t_none": ToolTable(with_t=True, complete=True),
+    "limits": ToolTable({1: Tool(), 2: Tool()}, complete=True),
 }
 """What a program may name in a comment `; tools milling` in one of its first three lines."""
 
@@ -137,3 +139,10 @@ def machine(text: str) -> tuple[tuple[str, ...], tuple[str, ...] | SpindleTable]
             axes, spindles = line.removeprefix("; machine").split("/")
             return tuple(axes.split()), TABLES.get(spindles.strip()) or tuple(spindles.split())
     return AXES, SPINDLES
+
+
+def channel_of(text: str) -> Channel:
+    """The channel that the comments of a program name: machine, dialect, tools, facing axes."""
+    axes, spindles = machine(text)
+    channel = plain_channel(axes, spindles, vocabulary_of(text))
+    return channel._replace(tools=tools(text), turning=turning_axes(text))

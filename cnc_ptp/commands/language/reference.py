@@ -9,7 +9,7 @@ from cnc_ptp.commands.language.word_errors import error_texts, errors_by_key
 from cnc_ptp.commands.language.words import Entry, entries
 from cnc_ptp.nc.expressions.reader import DEEPEST
 from cnc_ptp.nc.expressions.values import LARGEST_PARAMETER, MOST_VALUES
-from cnc_ptp.nc.flow.execution import Limits
+from cnc_ptp.nc.program import Limits
 
 INTRODUCTION = """# NC language
 Made from the tables of the language by `make docs`; `cnc_ptp explain G54` prints one row. Names and rules are those of
@@ -37,7 +37,7 @@ RULES = {
     "long lines": "a backslash at the end continues a line",
     "faults": "division by 0, overflow, undefined results and unset variables are errors with line and column",
     "limits": f"P0 to P{LARGEST_PARAMETER}; {MOST_VALUES:,} values; {DEEPEST} levels of brackets; "
-    f"{Limits().call_depth} calls within each other; {Limits().repeats:,} repeated lines",
+    f"{Limits().call_depth} calls within each other; {Limits().repeats:,} repeats",
 }
 ISO_INTRODUCTION = """# Vocabulary iso
 Made from the tables of the language by `make docs`; `cnc_ptp explain --dialect iso G64` prints one row. What CAM

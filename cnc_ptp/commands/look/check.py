@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
-from contextlib import suppress
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -17,17 +16,20 @@ from cnc_ptp.commands.console import print_error, print_missing_folders
 from cnc_ptp.errors import WRONG_INPUT, CncError
 from cnc_ptp.machine.program_files import NO_SEARCH, Search, is_longer, read_program, scan_program
 from cnc_ptp.machine.run_entries import program_search
+from cnc_ptp.nc.awaited import awaits_path, reads_the_run
 from cnc_ptp.nc.block_search import StartPoint
 from cnc_ptp.nc.canonical import BUSY, CanonicalBlock
 from cnc_ptp.nc.canonical_text import format_block
-from cnc_ptp.nc.faults import RETURN_IN_MAIN, ProgramError
+from cnc_ptp.nc.check import check as check_text
+from cnc_ptp.nc.expressions import expression_faults
+from cnc_ptp.nc.faults import RETURN_IN_MAIN, ProgramError, line_of_program
 from cnc_ptp.nc.flow.calls import arguments_read
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.flow.structures import Place
-from cnc_ptp.nc.interpreter import awaits_path, interpret
-from cnc_ptp.nc.interpreter import check as check_text
+from cnc_ptp.nc.interpreter import interpret
+from cnc_ptp.nc.modal_state import ModalState
 from cnc_ptp.nc.parser import parse_all, parse_program
-from cnc_ptp.nc.program import ModalState
+from cnc_ptp.nc.plain_channel import plain_channel
 from cnc_ptp.nc.program_text import ProgramFile, ProgramText
 from cnc_ptp.nc.vocabularies import VOCABULARIES
 from cnc_ptp.parameters import MachineParameters, read_machine
@@ -35,8 +37,8 @@ from cnc_ptp.protocol.notes import Note
 
 CHECKED_TEXT = 10_000_000
 """P-CHAN-90005 without a machine: characters."""
-AXES_WITHOUT_MACHINE = ("X", "Y", "Z")
-SPINDLES_WITHOUT_MACHINE = ("S",)
+WITHOUT_MACHINE = plain_channel(("X", "Y", "Z"))
+"""Axes X Y Z and spindle S."""
 
 
 def check(
@@ -75,12 +77,16 @@ def check(
             return print_result(errors, f"{name}: no syntax errors in {lines} lines{without_values(read)}")
         text, program, given["files"] = f"L CYCLE [NAME={name}]\nM30", "call of " + name, {**files, name: text}
     errors = errors_of(text, program, checked, given)
-    for error in errors:
-        search.explain(error, program)
+    error: CncError | None = None
     if begin is not None and not errors:
-        print_start(ProgramStart(begin, parse_program(text, program, **given)), parameters, canonical=canonical)
+        start = ProgramStart(begin, parse_program(text, program, **given))
+        error = print_start(start, parameters, canonical=canonical)
     elif canonical:
-        print_stream(Stream(parse_all(text, program, **given)[0], parameters).blocks())
+        error = print_stream(Stream(parse_all(text, program, **given)[0], parameters).blocks())
+    if isinstance(error, ProgramError) and str(error) not in map(str, errors):
+        errors.append(error)
+    for each in errors:
+        search.explain(each, program)
     return print_result(errors, "" if canonical or begin is not None else f"{name}: no errors in {lines} lines")
 
 
@@ -101,7 +107,8 @@ def errors_of(
 ) -> list[ProgramError]:
     """Of a program with its `files`, `cycles` and `vocabulary`."""
     if checked is None:
-        return check_text(text, program, AXES_WITHOUT_MACHINE, SPINDLES_WITHOUT_MACHINE, **given)
+        channel = WITHOUT_MACHINE._replace(vocabulary=given["vocabulary"])
+        return check_text(text, program, channel, files=given["files"], cycles=given["cycles"])
     return checked.errors(text, program, given["files"], given["vocabulary"])
 
 
@@ -132,7 +139,7 @@ class Stream:
     def __init__(self, program: Program, machine: MachineParameters | None) -> None:
         self._program = program
         self._check = None if machine is None else ProgramCheck.of_first_channel(machine, program.file)
-        self.axes = AXES_WITHOUT_MACHINE if self._check is None else self._check.axis_names
+        self.axes = WITHOUT_MACHINE.axes if self._check is None else self._check.axis_names
         self.start = (0.0,) * len(self.axes) if self._check is None else self._check.start
 
     def blocks(self, begin: ProgramStart | None = None) -> Iterator[CanonicalBlock]:
@@ -140,38 +147,61 @@ class Stream:
         if self._check is not None:
             return self._check.running(self._program, self.start, self._check.state({}, {}, {}), (), begin)
         state, search = ModalState(), None if begin is None else begin.search
-        spindles = SPINDLES_WITHOUT_MACHINE
-        stream = interpret(self._program, self.start, self.axes, spindles, state=state, runs=True, search=search)
+        stream = interpret(self._program, self.start, WITHOUT_MACHINE, state=state, runs=True, search=search)
         if begin is None:
             return stream
         return begin.blocks(stream, self.start, self.axes, state, lambda target, source: None)
 
 
-def print_start(begin: ProgramStart, machine: MachineParameters | None, *, canonical: bool) -> None:
-    """What is done at the start, step by step; `canonical`: then the blocks."""
+def print_start(begin: ProgramStart, machine: MachineParameters | None, *, canonical: bool) -> CncError | None:
+    """What is done at the start, step by step; `canonical`: then the blocks, up to the error that it returns."""
     stream = Stream(begin.program, machine)
     blocks = stream.blocks(begin)
     first = next((block for block in blocks if block is not BUSY), None)
     for number, step in enumerate(begin.lines(stream.axes, stream.start), 1):
         print(f"{number}. {step}")
-    if canonical and first is not None:
-        print_stream(chain([first], blocks))
+    return print_stream(chain([first], blocks)) if canonical and first is not None else None
 
 
-def print_stream(blocks: Iterator[CanonicalBlock]) -> None:
-    """The canonical blocks up to the first error, or to a line that reads what only the run knows."""
-    with suppress(CncError):
+def print_stream(blocks: Iterator[CanonicalBlock]) -> CncError | None:
+    """The canonical blocks up to the first error, which it returns, or to a line that reads what only the run knows.
+
+    Behind a block that moves axes to where only the run knows, they are taken to be where the program names them.
+    """
+    assumed = False
+    try:
         for block in blocks:
             if block is BUSY:
                 continue
             print(format_block(block))
-            if awaits_path(block):
-                print("what follows is known only while the program runs")
-                return
+            if reads_the_run(block):
+                print_unknown(block, ENDS_THERE)
+                return None
+            if awaits_path(block) and not assumed:
+                assumed = True
+                print_unknown(block, GOES_ON)
+    except CncError as error:
+        return error
+    return None
+
+
+ENDS_THERE = "what follows is known only while the program runs; the stream ends here"
+GOES_ON = "where axes are behind it is known only while the program runs; the stream continues with the named positions"
+
+
+def print_unknown(block: CanonicalBlock, what: str) -> None:
+    """The warning of a block behind which the stream is not what the run will have."""
+    text = f"{line_of_program(block.source, block.calls)}: {what}"
+    print_notes([Note(expression_faults.ONLY_WHILE_RUNNING.number, text)])
 
 
 def print_notices(machine: MachineParameters) -> None:
-    """Prints the warnings of a machine file on standard error."""
+    """Prints the warnings of a machine file."""
+    print_notes([Note(notice.error_id, str(notice)) for notice in machine.warnings])
+
+
+def print_notes(notes: Iterable[Note]) -> None:
+    """On standard error."""
     console = Console(stderr=True, highlight=False, soft_wrap=True)
-    for notice in machine.warnings:
-        console.print(str(Note(notice.error_id, str(notice))), style="yellow", markup=False)
+    for note in notes:
+        console.print(str(note), style="yellow", markup=False)

@@ -33,8 +33,8 @@ from cnc_ptp.wire.layout import Records
 
 AXIS_FIELDS = ("set_position", "set_velocity", "set_acceleration", "set_jerk", "state")
 CHANNEL_FIELDS = ("path_velocity", "programmed_feed", "distance_to_go", "line", "block_number", "state")
-SPINDLE_FIELDS = ("set_position_deg", "state")
-WHOLE_NUMBERS = {"cycle": "u8", "line": "u4", "block_number": "u4", "state": "u1"}
+SPINDLE_FIELDS = ("set_position_deg", "state", "status_bits")
+WHOLE_NUMBERS = {"cycle": "u8", "line": "u4", "block_number": "u4", "state": "u1", "status_bits": "u4"}
 NOTHING = "nothing was drawn"
 
 
@@ -63,7 +63,8 @@ def plot_program(
         raise CncError(BAD_OVERRIDE, limit, NOTHING)
     job.insert(1, Entry(0.0, Command(channel.name, "set_override", {"percent": override})))
     nodes = [axis.node for axis in channel.axes]
-    c_axis = [entry.node for entry in channel.spindles if channel.c_axis and entry.name == channel.main_spindle]
+    # each spindle may become the C axis (#MAIN SPINDLE)
+    c_axis = [entry.node for entry in channel.spindles if channel.c_axis and entry.node]
     fields = {channel.name: CHANNEL_FIELDS, **dict.fromkeys(nodes, AXIS_FIELDS)}
     fields |= dict.fromkeys(c_axis, SPINDLE_FIELDS)
     trial = run_trial(parameters, job, fields=fields, seconds=0.0, label=Path(program).name)

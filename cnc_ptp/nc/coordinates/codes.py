@@ -7,7 +7,8 @@ from cnc_ptp.nc.canonical import Function, number
 from cnc_ptp.nc.coordinates import coordinate_faults as faults
 from cnc_ptp.nc.coordinates.coordinates import INCH, NO_CHANGES, Coordinates, OffsetChanges, Offsets
 from cnc_ptp.nc.coordinates.placement import plane_axes, refresh
-from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Channel, GCode, NcBlock
 from cnc_ptp.nc.radius.radius_state import NOT_COMPENSATED
 
 LAST_OFFSET = 96
@@ -116,7 +117,8 @@ def reference_offset(channel: Channel, state: ModalState, block: NcBlock, code: 
     """G92 X10: an offset beside the zero offset; G90 sets it, G91 adds to it."""
     own = state.coordinates.own
     values = list(own.added or (0.0,) * len(channel.axes))
-    for index, value in axis_values(channel, state, block, code):
+    for index, given in axis_values(channel, state, block, code):
+        value = given * channel.turning.offset_factor(index)
         values[index] = value if state.absolute else values[index] + value
     state.coordinates.own = own._replace(added=tuple(values))
     refresh(channel, state)

@@ -17,7 +17,8 @@ from cnc_ptp.nc.expressions.values import Values
 from cnc_ptp.nc.faults import AXIS_UNKNOWN
 from cnc_ptp.nc.flow.command_words import Words
 from cnc_ptp.nc.flow.lines import Flow, Line, Statement
-from cnc_ptp.nc.program import Channel, ModalState, NcBlock
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Channel, NcBlock
 from cnc_ptp.nc.radius.changes import require_same_system
 
 DEEPEST: Final = 10

@@ -108,7 +108,28 @@ class Coordinates:
 
     def copy(self) -> "Coordinates":
         """Independent: what the fields hold is replaced as a whole, never changed."""
-        return replace(self)
+        return Coordinates(
+            self.unit,
+            self.changes,
+            self.own,
+            self.turn,
+            self.plane,
+            self.scale,
+            self.scaled,
+            self.mirror,
+            self.systems,
+            self.defined,
+            self.last_defined,
+            self.clamp,
+            self.tool,
+            self.tool_fixed,
+            self.clamp_index,
+            self.limits,
+            self.outside,
+            self.kinematics,
+            self.untransformed,
+            self.suspended,
+        )
 
     def lasting(self) -> "Coordinates":
         """Where clamp position and tool are changed: between #MCS ON and #MCS OFF those count from #MCS OFF on."""
@@ -119,7 +140,7 @@ class Coordinates:
 
     def leave(self) -> None:
         """#MCS ON: the coordinates of the machine."""
-        self.outside = replace(self)
+        self.outside = self.copy()
         self._place(BARE)
 
     def come_back(self) -> None:

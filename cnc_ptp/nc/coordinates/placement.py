@@ -3,7 +3,8 @@
 from cnc_ptp.nc.canonical import CircularMove, LinearMove, Source
 from cnc_ptp.nc.coordinates import coordinate_faults as faults
 from cnc_ptp.nc.coordinates.frame import dot
-from cnc_ptp.nc.program import Channel, ModalState, NcBlock
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Channel, NcBlock
 
 
 def place(

@@ -3,7 +3,8 @@
 from cnc_ptp.nc.canonical import OffsetReport
 from cnc_ptp.nc.coordinates.coordinates import Offsets
 from cnc_ptp.nc.coordinates.frame import IDENTITY
-from cnc_ptp.nc.program import Channel, ModalState
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Channel
 
 
 def offset_report(channel: Channel, state: ModalState) -> OffsetReport:

@@ -69,7 +69,8 @@ def require_offset(values: Values, index: int, word: str, column: int) -> None:
 def zero_offset(values: Values, units: Units, column: int) -> Scalar:
     """V.G.NP[j].V.X."""
     index, axis = table_index(values, units[0], column), axis_of(values, units[1], column)
-    return length(values, axis, offset_values(values.channel, values.state.coordinates.changes, index)[axis])
+    offset = offset_values(values.channel, values.state.coordinates.changes, index)[axis]
+    return length(values, axis, offset / values.channel.turning.offset_factor(axis))
 
 
 def set_zero_offset(values: Values, units: Units, value: Scalar, column: int) -> None:
@@ -77,7 +78,7 @@ def set_zero_offset(values: Values, units: Units, value: Scalar, column: int) ->
     index, axis = table_index(values, units[0], column), axis_of(values, units[1], column)
     require_offset(values, index, "V.G.NP[0]", column)
     table = list(offset_values(values.channel, values.state.coordinates.changes, index))
-    table[axis] = in_mm(values, axis, value, column)
+    table[axis] = in_mm(values, axis, value, column) * values.channel.turning.offset_factor(axis)
     changes = values.state.coordinates.changes
     values.state.coordinates.changes = changes._replace(values={**changes.values, index: tuple(table)})
 
@@ -85,7 +86,7 @@ def set_zero_offset(values: Values, units: Units, value: Scalar, column: int) ->
 def active_offset(values: Values, units: Units, column: int) -> Scalar:
     """V.G.NP_AKT.V.X."""
     axis, zero = axis_of(values, units[0], column), values.state.coordinates.own.zero
-    return length(values, axis, zero[axis]) if zero else 0.0
+    return length(values, axis, zero[axis] / values.channel.turning.offset_factor(axis)) if zero else 0.0
 
 
 def set_active_offset(values: Values, units: Units, value: Scalar, column: int) -> None:
@@ -93,7 +94,7 @@ def set_active_offset(values: Values, units: Units, value: Scalar, column: int) 
     axis, own = axis_of(values, units[0], column), values.state.coordinates.own
     require_offset(values, own.zero_index, "V.G.NP_AKT", column)
     zero = list(own.zero or (0.0,) * len(values.channel.axes))
-    zero[axis] = in_mm(values, axis, value, column)
+    zero[axis] = in_mm(values, axis, value, column) * values.channel.turning.offset_factor(axis)
     values.state.coordinates.own = own._replace(zero=tuple(zero))
     refresh(values.channel, values.state)
 

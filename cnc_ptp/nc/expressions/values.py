@@ -8,7 +8,8 @@ from cnc_ptp.nc.canonical import Source, number
 from cnc_ptp.nc.expressions import expression_faults as faults
 from cnc_ptp.nc.faults import Fault, ProgramError
 from cnc_ptp.nc.measuring import Measured, Touch
-from cnc_ptp.nc.program import Channel, ModalState
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Channel
 
 Scalar = float | str
 

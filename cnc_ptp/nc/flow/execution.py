@@ -16,17 +16,11 @@ from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow import flow_faults
 from cnc_ptp.nc.flow.calls import check_arguments
 from cnc_ptp.nc.flow.lines import Call, Flow, Line
+from cnc_ptp.nc.flow.repetition import Repetition
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.flow.structures import Place, Structure
-from cnc_ptp.nc.program import ModalState, NcBlock
-
-
-class Limits(NamedTuple):
-    """`call_depth`: subroutines within each other; `repeats`: lines that are jumped back to, and calls, in all."""
-
-    call_depth: int = 20
-    repeats: int = 1_000_000
-
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Limits, NcBlock
 
 EVALUATE: Final = ("$IF", "$SWITCH", "$ENDFOR")
 """Statements that evaluate what other lines of their structure say."""
@@ -39,7 +33,9 @@ DECIDES: Final = re.compile(
     r"[$#@%]|\bLL?\s|G\s*8\d|\b[PV]\s*[\d.\[]|M\s*(?:0*2|17|29|30|99)\b", re.ASCII | re.IGNORECASE
 )
 """What a line that cannot be read may do to the order of execution and to values."""
-ENDLESS: Final = (faults.CALL_DEPTH.number, flow_faults.LOOP_LIMIT.number)
+ENDLESS: Final = (faults.CALL_DEPTH.number, flow_faults.LOOP_LIMIT.number, flow_faults.ENDLESS.number)
+"""Nothing comes behind them."""
+ALL_LINES: Final = 1 << 60
 
 
 class Pending(NamedTuple):
@@ -54,8 +50,8 @@ class Pending(NamedTuple):
 class Frame:
     """Where a subroutine was called, and what its caller had."""
 
-    def __init__(self, program: Program, number: int, offset: int, source: Source, call: Call) -> None:
-        self.program, self.number, self.offset = program, number, offset
+    def __init__(self, program: Program, number: int, offset: int, repeated: int, source: Source, call: Call) -> None:
+        self.program, self.number, self.offset, self.repeated = program, number, offset, repeated
         self.source, self.name, self.column = source, call.name, call.column
         self.local: dict[str, Variable] = {}
         self.cycle: dict[str, Variable] = {}
@@ -96,7 +92,13 @@ class Execution(Flow):
         self.ended = False
         self.moved = False
         """The last block had a motion; who resolves it says so."""
-        self._repeats = 0
+        self.blocks = 0
+        """Canonical blocks of the last block; who resolves it says so."""
+        self._repetition = Repetition(limits)
+        self._repeated = 0
+        """Lines up to this one have been executed before, within the active call."""
+        self._entered: set[tuple[str, int]] = set()
+        """Files and first lines of subroutines that have been called."""
         self._line: Line | None = None
         """Of the last block, until what follows it has been done."""
         self._depth = 0
@@ -154,6 +156,8 @@ class Execution(Flow):
                 self.number, self.offset = line.next_number, line.next_offset
                 continue
             self._read = line
+            if self.number <= self._repeated:
+                self._repetition.line(line.source)
             if self.uncertain and READS_STATE.search(line.source.text):
                 self.ended = self.reads_unknown = True
                 return None
@@ -200,6 +204,7 @@ class Execution(Flow):
         """Whether the path must stand before what follows; once for each time that it is executed."""
         if needed and self._paused != place:
             self._paused = place
+            self.forget()
             return True
         self._paused = -1
         return False
@@ -214,6 +219,8 @@ class Execution(Flow):
     def _after_block(self, line: Line) -> None:
         """What follows a block when it has been resolved: the end of its subroutine, a modal call, its own call."""
         self._line = None
+        if self.blocks and line.number <= self._repeated:
+            self._repetition.blocks(self.blocks, line.source)
         if self._returns:
             self._returns = False
             self.leave(line)
@@ -242,7 +249,11 @@ class Execution(Flow):
         self.number, self.offset = place
 
     def back(self, place: Place, line: Line) -> None:
-        self._count_repeat(line)
+        self._repetition.repeat(line.source)
+        self._repeated = max(self._repeated, line.number)
+        calls = len(self.frames)
+        here = (place.line, self.frames[-1] if calls else None, self._modal, self.values.block_number)
+        self._repetition.jump((calls, place.line - line.number), here, self.values, line.source)
         self.number, self.offset = place
 
     def jump(self, line: Line) -> None:
@@ -250,13 +261,12 @@ class Execution(Flow):
         if isinstance(place, ProgramError):
             raise place
         if place.line <= line.number:
-            self._count_repeat(line)
+            self.back(place, line)
         self.number, self.offset = place
 
-    def _count_repeat(self, line: Line) -> None:
-        self._repeats += 1
-        if self._repeats > self.limits.repeats:
-            raise flow_faults.LOOP_LIMIT.at(line.source, limit=self.limits.repeats)
+    def forget(self) -> None:
+        """What comes next does not follow from the state alone: the interpreter gets what only the run knows."""
+        self._repetition.forget()
 
     # subroutines
 
@@ -268,19 +278,22 @@ class Execution(Flow):
         if depth > self.limits.call_depth:
             limit = self.limits.call_depth
             raise faults.CALL_DEPTH.at(line.source, call.column, name=call.name, depth=depth, limit=limit)
-        self._count_repeat(line)
+        self._repetition.repeat(line.source)
         program, place = self.program.called(call, line.source)
         if call.arguments:
             check_arguments(call, line.source, program, place)
         values = self.values
         values.source = line.source
         arguments = {name: node.scalar(values) for name, node in call.arguments.items()}
-        frame = Frame(self.program, self.number, self.offset, line.source, call)
+        frame = Frame(self.program, self.number, self.offset, self._repeated, line.source, call)
         frame.local, frame.cycle, frame.arguments = values.local, values.cycle, values.arguments
         if call.cycle:
             frame.modal = values.state.copy()
         self.program = program
         self.number, self.offset = place
+        section = (program.file, place.line)
+        self._repeated = ALL_LINES if section in self._entered else 0
+        self._entered.add(section)
         self.frames.append(frame)
         self.calls = (f"{line.source.file} line {line.source.line}", *self.calls)
         values.inherited = values.cycle
@@ -302,6 +315,7 @@ class Execution(Flow):
         if len(self.frames) < self._modal_depth:
             self.end_modal_call()
         self.program, self.number, self.offset = frame.program, frame.number, frame.offset
+        self._repeated = frame.repeated
         self.values.leave(frame.local, frame.cycle, frame.arguments)
         self.values.inherited = self.frames[-1].cycle if self.frames else {}
         self.values.level = len(self.frames) + 1

@@ -16,7 +16,8 @@ from cnc_ptp.nc.canonical import Dwell, LinearMove, SpindleFunction, Tap, number
 from cnc_ptp.nc.contour import EXACT_STOP
 from cnc_ptp.nc.iso import iso_faults as faults
 from cnc_ptp.nc.iso.offsets import integer
-from cnc_ptp.nc.program import Channel, Drilling, GCode, ModalState, NcBlock, Step
+from cnc_ptp.nc.modal_state import Drilling, ModalState, Step
+from cnc_ptp.nc.program import Channel, GCode, NcBlock
 from cnc_ptp.nc.radius.changes import require_off
 from cnc_ptp.nc.spindles import current_main, require_spindle
 from cnc_ptp.nc.turning_faults import TAPPING_FEED

@@ -2,7 +2,8 @@
 
 from cnc_ptp.nc.canonical import number as shown
 from cnc_ptp.nc.iso import iso_faults as faults
-from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Channel, GCode, NcBlock
 from cnc_ptp.nc.tools.compensation import cancel_length, select_length
 
 

@@ -7,7 +7,8 @@ from cnc_ptp.nc import motions
 from cnc_ptp.nc.canonical import CircularMove, Dwell, LinearMove, number
 from cnc_ptp.nc.coordinates import coordinate_faults
 from cnc_ptp.nc.iso import iso_faults as faults
-from cnc_ptp.nc.program import NO_DRILLING, Channel, GCode, ModalState, NcBlock, Step
+from cnc_ptp.nc.modal_state import NO_DRILLING, ModalState, Step
+from cnc_ptp.nc.program import Channel, GCode, NcBlock
 from cnc_ptp.nc.radius.changes import require_off
 
 

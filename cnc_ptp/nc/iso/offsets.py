@@ -7,7 +7,8 @@ from cnc_ptp.nc.contour import Contour, Smoothing, Transition
 from cnc_ptp.nc.coordinates.codes import LAST_OFFSET, axis_values, offset_values, select_offset
 from cnc_ptp.nc.coordinates.placement import refresh
 from cnc_ptp.nc.iso import iso_faults as faults
-from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Channel, GCode, NcBlock
 from cnc_ptp.nc.radius.changes import require_off
 
 G59: Final = 6
@@ -50,7 +51,8 @@ def set_offset(channel: Channel, state: ModalState, block: NcBlock, code: GCode)
     values = list(offset_values(channel, changes, index))
     active = own.zero or (0.0,) * len(channel.axes)
     for axis, value in axis_values(channel, state, block, code):
-        values[axis] = value if kind == 2.0 else active[axis] + state.programmed[axis] - value
+        given = value * channel.turning.offset_factor(axis)
+        values[axis] = given if kind == 2.0 else active[axis] + state.programmed[axis] - value
     state.coordinates.changes = changes._replace(values={**changes.values, index: tuple(values)})
     if index == own.zero_index:
         select_offset(channel, state, index)

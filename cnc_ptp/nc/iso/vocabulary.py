@@ -6,7 +6,8 @@ from cnc_ptp.nc import feeds, functions, measuring, motions, transitions, turnin
 from cnc_ptp.nc.coordinates import codes
 from cnc_ptp.nc.iso import cycles, lengths, offsets
 from cnc_ptp.nc.iso import motions as own
-from cnc_ptp.nc.program import GCode, MCode, ModalState, Vocabulary
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import GCode, MCode, Vocabulary
 from cnc_ptp.nc.radius import radius_codes
 from cnc_ptp.nc.vocabulary import centre, dimension, plane
 

@@ -1,7 +1,7 @@
 """What must not change, and what is not possible, while the radius is compensated."""
 
 from cnc_ptp.nc.canonical import Source
-from cnc_ptp.nc.program import ModalState
+from cnc_ptp.nc.modal_state import ModalState
 from cnc_ptp.nc.radius import radius_faults as faults
 from cnc_ptp.nc.radius.tool_radius import described, radius_of, tip_of, tool_of
 from cnc_ptp.parameters import Tool

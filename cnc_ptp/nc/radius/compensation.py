@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterator
 from typing import Final
 
 from cnc_ptp.nc import faults as nc_faults
+from cnc_ptp.nc.awaited import awaits_path
 from cnc_ptp.nc.block_search import BlockSearch
 from cnc_ptp.nc.canonical import (
     BEGIN,
@@ -36,7 +37,8 @@ from cnc_ptp.nc.coordinates.placement import PLANE_AXES
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.feeds import INVERSE, TIME
 from cnc_ptp.nc.measuring import measures
-from cnc_ptp.nc.program import Channel, ModalState
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Channel
 from cnc_ptp.nc.radius import radius_faults as faults
 from cnc_ptp.nc.radius.contour_path import ArcTooSmall, ContourPath, Element, TooNarrow
 from cnc_ptp.nc.radius.entries import Entry
@@ -60,15 +62,12 @@ class RadiusCompensation:
         channel: Channel,
         state: ModalState,
         check: CheckMotion,
-        awaits_path: Callable[[CanonicalBlock], bool],
         search: BlockSearch | None,
         source: Source,
     ) -> None:
-        """`awaits_path`: the interpreter needs what only the run knows behind a block; `search` that is going on;
-        `source` of the program.
-        """
+        """`search` that is going on; `source` of the program."""
         self._channel, self._state, self._check = channel, state, check
-        self._awaits_path, self._search = awaits_path, search
+        self._search = search
         self._source = source
         """Of the last block with compensation."""
         self._here = state.position
@@ -120,7 +119,7 @@ class RadiusCompensation:
             yield block
 
     def _take(self, block: CanonicalBlock, before: tuple[float, ...]) -> Iterator[CanonicalBlock]:
-        if self._awaits_path(block):
+        if awaits_path(block):
             raise self._at(faults.NOT_WHILE, block, what=wait_of(block))
         if block.motion is not None and self._state.feed_mode in (TIME, INVERSE):
             raise self._at(faults.NOT_WHILE, block, what="a feed by time (G93)")

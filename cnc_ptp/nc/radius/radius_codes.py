@@ -3,11 +3,11 @@
 from collections.abc import Callable
 
 from cnc_ptp.nc.functions import MAX_TOOL, number_function
-from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Channel, GCode, NcBlock
 from cnc_ptp.nc.radius.changes import require_same_radius
 from cnc_ptp.nc.radius.radius_state import LEFT, RIGHT
-from cnc_ptp.nc.tools import tool_faults
-from cnc_ptp.nc.tools.compensation import data_of
+from cnc_ptp.nc.tools.compensation import data_of, unknown_data
 
 SIDES = {40: 0, 41: LEFT, 42: RIGHT}
 
@@ -46,8 +46,6 @@ def take_data(channel: Channel, state: ModalState, block: NcBlock, code: GCode) 
     number = number_function(block, "D", MAX_TOOL).number
     data = data_of(channel, state, number)
     if data is None:
-        known = ", ".join(f"D{each}" for each in sorted(channel.tools.tools)) or "none"
-        column = block.source.column("D")
-        raise tool_faults.DATA_UNKNOWN.at(block.source, column, word=f"D{number}", number=number, known=known)
+        raise unknown_data(channel, block.source, block.source.column("D"), f"D{number}", number)
     require_same_radius(state, data, block.source, block.source.column("D"), f"D{number}")
     state.radius_compensation = state.radius_compensation._replace(data=data)

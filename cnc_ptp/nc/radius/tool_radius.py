@@ -8,7 +8,7 @@ machines do, with the first axis of the plane to the right (G18: Z) and the seco
 from typing import Final
 
 from cnc_ptp.nc.canonical import number
-from cnc_ptp.nc.program import ModalState
+from cnc_ptp.nc.modal_state import ModalState
 from cnc_ptp.nc.radius.shapes import Vector
 from cnc_ptp.parameters import Tool
 

@@ -7,8 +7,10 @@ G43 H selects: T calls the next tool while the last one cuts.
 
 from cnc_ptp.nc.canonical import LinearMove, Source, number
 from cnc_ptp.nc.coordinates.placement import refresh
+from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.functions import MAX_TOOL, number_function
-from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
+from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.program import Channel, GCode, NcBlock
 from cnc_ptp.nc.radius.changes import require_same_plane, require_same_radius
 from cnc_ptp.nc.tools import tool_faults as faults
 from cnc_ptp.nc.tools.tool_state import NO_TOOL
@@ -19,7 +21,7 @@ NORMAL = {17: 2, 18: 1, 19: 0}
 
 
 def tool_words(channel: Channel, state: ModalState, block: NcBlock) -> bool:
-    """T and D of a block; whether D has selected data. Raises ProgramError 20296, 21010, 21650 to 21652, 20738."""
+    """T and D of a block; whether they have selected data. Raises ProgramError 21010, 21650, and as `select`."""
     letters = channel.vocabulary.function_words
     has_data = "D" in block.words and "D" in letters
     if "T" in block.words and "T" in letters:
@@ -42,9 +44,9 @@ def _require_tool(channel: Channel, block: NcBlock, tool: int) -> None:
 
 
 def select(channel: Channel, state: ModalState, source: Source, number: int, word: str) -> None:
-    """Selects compensation data by a word of the block (D, T, H, G49); without a tool table there are none.
+    """Selects compensation data by a word of the block (D, T, H, G49); where no machine is known there are none.
 
-    Raises ProgramError 20296, 21651, 21652, 20738.
+    Raises ProgramError 20296, 21651, 21652, 21656, 20738.
     """
     shown, column = f"{word}{number}" if len(word) == 1 else word, source.column(word)
     name, file, line = state.tool.written
@@ -52,9 +54,8 @@ def select(channel: Channel, state: ModalState, source: Source, number: int, wor
         raise faults.WRITTEN_WITH_D.at(source, column, name=name, word=shown)
     data = data_of(channel, state, number)
     if data is None:
-        if channel.tools.present:
-            known = ", ".join(f"D{each}" for each in sorted(channel.tools.tools)) or "none"
-            raise faults.DATA_UNKNOWN.at(source, column, word=shown, number=number, known=known)
+        if channel.tools.present or channel.tools.complete:
+            raise unknown_data(channel, source, column, shown, number)
         data = NO_TOOL
     if not data.valid:
         raise faults.DATA_INVALID.at(source, column, word=shown, number=number)
@@ -62,6 +63,14 @@ def select(channel: Channel, state: ModalState, source: Source, number: int, wor
         require_same_radius(state, data, source, column, shown)
     state.tool.d, state.tool.data = number, data
     apply(channel, state, source, column)
+
+
+def unknown_data(channel: Channel, source: Source, column: int, word: str, number: int) -> ProgramError:
+    """20296, or 21656 where there are no data at all."""
+    if not channel.tools.tools and not channel.tools.present:
+        return faults.NO_TABLE.at(source, column, word=word, number=number)
+    known = ", ".join(f"D{each}" for each in sorted(channel.tools.tools)) or "none"
+    return faults.DATA_UNKNOWN.at(source, column, word=word, number=number, known=known)
 
 
 def select_length(channel: Channel, state: ModalState, source: Source, number: int, word: str = "H") -> None:

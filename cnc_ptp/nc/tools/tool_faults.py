@@ -3,6 +3,9 @@
 from cnc_ptp.nc.faults import Fault
 
 DATA_UNKNOWN = Fault(20296, "{word}: the tool table has no compensation data D{number}; known are: {known}")
+NO_TABLE = Fault(
+    21656, "{word}: there are no compensation data {number}, the machine has no tool table (werkz_data, wz[{number}])"
+)
 TOOL_UNKNOWN = Fault(21650, "tool T{number} is not in the tool table; known are: {known}")
 DATA_INVALID = Fault(21651, "{word}: compensation data D{number} are not valid (P-TOOL-00005 wz[{number}].gueltig)")
 LENGTH_AXIS = Fault(

@@ -1,6 +1,6 @@
 """The tool of a program as modal state."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from cnc_ptp.parameters import Tool
 
@@ -26,4 +26,4 @@ class ToolState:
 
     def copy(self) -> "ToolState":
         """Independent: what the fields hold is replaced as a whole, never changed."""
-        return replace(self)
+        return ToolState(self.t, self.d, self.data, self.changed, self.written)

@@ -15,7 +15,7 @@ from rclpy.client import Client
 from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
 
-from cnc_ptp.errors import CncError
+from cnc_ptp.errors import CncError, nearest_name
 from cnc_ptp.machine.wiring import UNKNOWN_UNIT
 from cnc_ptp.nodes import process
 from cnc_ptp.nodes.bridge.coupling_services import PATIENCE as COUPLING_PATIENCE
@@ -149,14 +149,14 @@ def arguments_of(kind: str, unit: str, command: str) -> Arguments:
     service = services_of(kind).get(command)
     if service is None:
         where = f"{kind} {unit}"
-        known = ", ".join(sorted(services_of(kind)))
+        known = sorted(services_of(kind))
         if command == "jog" and kind == "axis":
             raise CncError(UNKNOWN_COMMAND, f"jog has no service, use: cnc_ptp jog {unit} + --speed ...", where=where)
         if command in COMMANDS[kind].keys() - INTERNAL:
             text = f"'{command}' is a command of scenarios only"
         else:
-            text = f"unknown command '{command}'"
-        raise CncError(UNKNOWN_COMMAND, text, f"nothing was sent. Known: {known}", where=where)
+            text = f"unknown command '{command}'{nearest_name(command, known)}"
+        raise CncError(UNKNOWN_COMMAND, text, f"nothing was sent. Known: {', '.join(known)}", where=where)
     fields = service.Request.get_fields_and_field_types()
     return {name: argument for name, argument in COMMANDS[kind][command].items() if name in fields}
 

@@ -9,8 +9,8 @@ from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.parameters.read.messages import Notice, notice
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
-from cnc_ptp.parameters.view.axis_view import is_modulo
-from cnc_ptp.parameters.view.channel_members import Sets, spindle_entries
+from cnc_ptp.parameters.view.axis_view import is_facing, is_modulo
+from cnc_ptp.parameters.view.channel_members import Sets, axis_entries, spindle_entries
 from cnc_ptp.parameters.view.encoder import CORRECTED, uses_feed_constant
 from cnc_ptp.parameters.view.gears import active_gear
 from cnc_ptp.parameters.view.spindle_view import curve_view, has_position
@@ -37,6 +37,7 @@ def machine_notices(machine: ParameterSet, sets: Sets) -> Iterator[Notice]:
             yield from tools_without_limit(parameters)
             yield from couplings_without_effect(parameters)
             yield from ranges_above_the_spindle(parameters, sets)
+            yield from diameters_without_facing_axis(parameters, sets)
         else:
             yield from control_notices(parameters, cycle_time)
             yield from friction_notices(parameters)
@@ -102,6 +103,14 @@ def ranges_above_the_spindle(channel: ParameterSet, sets: Sets) -> Iterator[Noti
             if top > most:
                 text = f"value {top} (rpm) is above P-AXIS-00212 getriebe[{gear}].vb_max of /{entry.node}, {most:g} rpm"
                 yield notice(channel, ids.RANGE_TABLE_MAX_SPEED, (*entry.indexes, gear), text)
+
+
+def diameters_without_facing_axis(channel: ParameterSet, sets: Sets) -> Iterator[Notice]:
+    """Offsets in diameters are those of a facing axis."""
+    axes = [sets[entry.node] for entry in axis_entries(channel, sets) if entry.node is not None]
+    if channel.number(ids.VERSCH_IM_DURCHM) and not any(is_facing(axis) for axis in axes):
+        text = "without effect, the channel has no facing axis (P-AXIS-00015 0x40)"
+        yield notice(channel, ids.VERSCH_IM_DURCHM, (), text)
 
 
 def corrected_resolution(parameters: ParameterSet) -> Iterator[Notice]:

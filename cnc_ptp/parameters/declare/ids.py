@@ -177,6 +177,7 @@ SLOPE_PROFILE = "P-CHAN-00071"  # prog_start.slope.profile
 SPINDEL_RANGE_WAY = "P-CHAN-00074"  # spindel[i].range_way
 SPINDEL_S_SYNCH = "P-CHAN-00081"  # spindel[i].s_synch
 SPDL_ANZAHL = "P-CHAN-00082"  # spdl_anzahl
+VERSCH_IM_DURCHM = "P-CHAN-00091"  # versch_im_durchm
 USE_DRIVE_CURR_LIMIT = "P-CHAN-00097"  # use_drive_curr_limit
 MOVE_TOOL_OFFSETS_DIRECTLY = "P-CHAN-00100"  # move_tool_offsets_directly
 G80_PROG_FILE = "P-CHAN-00160"  # g80_prog_file

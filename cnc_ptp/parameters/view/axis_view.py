@@ -96,7 +96,7 @@ def axis_view(parameters: ParameterSet, cycle_time: float) -> AxisParameters:
         name=parameters.node,
         rotary=parameters.axis_type == "R",
         modulo=modulo,
-        facing=bool(int(parameters.number(ids.KENNGR_ACHS_MODE)) & FACING),
+        facing=is_facing(parameters),
         modulo_low=low if modulo else 0.0,
         modulo_high=high if modulo else 0.0,
         virtual=parameters.number(ids.KENNGR_ANTR_TYP) == DriveType.VIRTUAL,
@@ -125,6 +125,11 @@ def jerk(parameters: ParameterSet, gear: int) -> float:
     """J = a_beschl / tr_beschl_zu, in mm/s³ or °/s³."""
     ramp_time_us = parameters.number(ids.SLOPE_PROFIL_TR_BESCHL_ZU, gear)
     return parameters.number(ids.SLOPE_PROFIL_A_BESCHL, gear) * 1_000_000 / ramp_time_us
+
+
+def is_facing(parameters: ParameterSet) -> bool:
+    """The facing axis of a lathe (P-AXIS-00015)."""
+    return bool(int(parameters.number(ids.KENNGR_ACHS_MODE)) & FACING)
 
 
 def is_modulo(parameters: ParameterSet) -> bool:

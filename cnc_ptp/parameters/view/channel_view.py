@@ -90,8 +90,6 @@ class ChannelParameters:
     """Coupling group 0: (slave, master) by the name of the spindle (P-CHAN-00037, 00038)."""
     tools: Mapping[int, ToolLimits] = field(default_factory=dict)
     """Limits of the tools that have some, by D number."""
-    tool_records: frozenset[int] = frozenset()
-    """D numbers of all tools in the file."""
     tool_table: ToolTable = NO_TOOLS
     """Compensation data of the tools."""
     slope: str = "TRAPEZ"
@@ -126,6 +124,8 @@ class ChannelParameters:
     """… and its way, mm, signed."""
     signal_required: Annotated[bool, ids.MEAS_ERROR_NO_SIGNAL] = True
     """A measuring run without a signal of the probe is an error."""
+    offsets_in_diameters: Annotated[bool, ids.VERSCH_IM_DURCHM] = False
+    """Zero offsets and G92 of the facing axis are diameters."""
     shows_diameter: Annotated[bool, ids.DISPLAY_DIAMETER_POS] = False
     """With G51 the channel shows the facing axis in diameters."""
     cutting_speed_in_feet: Annotated[bool, ids.ENABLE_UNIT_FEET_CUT_SPEED] = False
@@ -166,7 +166,6 @@ def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet], folder
         max_override_percent=channel.percent(ids.MAX_VB_OVERRIDE),
         coupled=coupled_spindles(channel, spindles),
         tools=tool_limits(channel, spindles),
-        tool_records=frozenset(channel.used_indexes("wz")),
         dialect=channel.text(ids.INTERPRETER_DIALECT),
         tool_table=tool_table(channel, sets),
         slope={0: "STEP", 2: "SIN2"}.get(int(channel.number(ids.SLOPE_PROFILE)), "TRAPEZ"),

@@ -43,7 +43,8 @@ class Tool(NamedTuple):
 class ToolTable(NamedTuple):
     """The tools of a channel by D number, each once.
 
-    present   the machine file has a tool table: T and D without a record are errors
+    present   the machine file has a tool table: T without a record is an error
+    complete  there are no other tools: D without a record is an error; False where no machine file is known
     with_t    T selects the data of the same number too (P-CHAN-00014)
     at_once   the block of the D word moves all axes that it changes (P-CHAN-00100)
     """
@@ -52,6 +53,7 @@ class ToolTable(NamedTuple):
     present: bool = False
     with_t: bool = False
     at_once: bool = False
+    complete: bool = False
 
 
 NO_TOOLS: Final = ToolTable()
@@ -65,6 +67,7 @@ def tool_table(channel: ParameterSet, sets: Sets) -> ToolTable:
         has_table(channel),
         bool(channel.value(ids.EINRECHNEN_MIT_T)),
         bool(channel.value(ids.MOVE_TOOL_OFFSETS_DIRECTLY)),
+        complete=True,
     )
 
 

@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from typing import Final
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.path.thread.spindle_angle import SpindleAngle
+from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
+from cnc_ptp.path.thread.spindle_angle import SpindleAngle, SpindleReport
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
 from cnc_ptp.protocol.blocks import CycleBlock, SpindleBlock
 from cnc_ptp.protocol.spindle_states import SpindleBit
@@ -46,9 +47,19 @@ class LeadingSpindle:
         self._report = report if isinstance(report, SpindleBlock) else None
         if self._report is None:
             return False
-        self.angle.read(self._report.first_cycle, self._report.actual_position_deg)
+        self.angle.read(self._what_it_does(self._report))
         self._note_speed(self._report)
         return True
+
+    def _what_it_does(self, report: SpindleBlock) -> SpindleReport:
+        wanted = 0.0
+        if self._turns(report) and not self.held:
+            suppressed = report.status_bits[-1] & SpindleBit.OVERRIDE_SUPPRESSED
+            override = 1.0 if suppressed else 0.01 * report.override_percent[-1]
+            wanted = report.programmed_speed_rpm[-1] * override * DEG_S_PER_RPM
+        speeds = [rpm * DEG_S_PER_RPM for rpm in report.set_speed_rpm]
+        gain = report.set_acceleration_deg_s2[-1]
+        return SpindleReport(report.first_cycle, report.actual_position_deg, speeds, gain, wanted)
 
     @property
     def cycles(self) -> int:

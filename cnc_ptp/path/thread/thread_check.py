@@ -133,6 +133,27 @@ def checked_geometry(
     return geometry, ramps
 
 
+def joined(
+    settings: ThreadSettings, geometry: ThreadGeometry, motion: LinearMove, speed: float, begin: float
+) -> float | None:
+    """Appends a block to a thread under way at `speed` (deg/s): deg of the run-out at its new end.
+
+    None if that does not fit: the geometry is as before. The joint must lie behind φ = `begin`.
+    """
+    end = geometry.end
+    geometry.append(motion.target, words_of(motion), speed)
+    last = len(geometry) - 1
+    reach = end - 0.5 * geometry.zone_of(last)
+    free = max(begin, geometry.begin_of(last - 1) + 0.5 * geometry.zone_of(last - 1))
+    out = way_out(settings, geometry, last, speed)
+    fits = reach >= free and end + 0.5 * geometry.zone_of(last) + out <= geometry.end
+    fits = fits and not too_fast(settings, geometry.slopes_of(last), speed)
+    if fits and not bends_too_much(settings, geometry.bends_of(last), speed):
+        return out
+    geometry.pop()
+    return None
+
+
 def too_fast(settings: ThreadSettings, slopes: Sequence[float], speed: float) -> bool:
     """An axis cannot follow the spindle; `slopes` in mm per deg, `speed` in deg/s."""
     return any(abs(m) * speed > axis.velocity for m, axis in zip(slopes, settings.limits, strict=True))

@@ -113,6 +113,15 @@ class ThreadGeometry:
         slopes, bends = self._blocks[block].slopes, self._blocks[block].bends
         return [max(abs(m), abs(m + c * angle)) for m, c in zip(slopes, bends, strict=True)]
 
+    def fastest(self, blocks: Sequence[int]) -> float:
+        """deg/s of φ up to which the velocities of the axes last on these blocks."""
+        most = LARGEST_LIMIT
+        for block in blocks:
+            for slope, axis in zip(self.slopes_of(block), self._limits, strict=True):
+                if slope:
+                    most = min(most, axis.velocity / slope)
+        return most
+
     def bends_of(self, block: int) -> tuple[float, ...]:
         """mm per deg² of each axis."""
         return self._blocks[block].bends

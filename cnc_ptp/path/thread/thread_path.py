@@ -28,7 +28,7 @@ from cnc_ptp.path.active_motion import ActiveMotion, PathPoint
 from cnc_ptp.path.interpolator import PathInterpolator
 from cnc_ptp.path.linked_path import MotionSource
 from cnc_ptp.path.shape import AxisState, standing
-from cnc_ptp.path.thread.lead import Fading, fading
+from cnc_ptp.path.thread.following import Following
 from cnc_ptp.path.thread.leading_spindle import STANDS, LeadingSpindle
 from cnc_ptp.path.thread.retract import Retract, RetractMotion
 from cnc_ptp.path.thread.thread_check import (
@@ -37,14 +37,12 @@ from cnc_ptp.path.thread.thread_check import (
     Ramps,
     ThreadSettings,
     angle_of,
-    bends_too_much,
     checked_geometry,
+    joined,
     last_pitch_of,
     limits_of,
     pitch_of,
     require_velocity,
-    too_fast,
-    way_out,
     words_of,
 )
 from cnc_ptp.path.thread.thread_geometry import ThreadGeometry
@@ -56,8 +54,6 @@ NO_OVERRIDE = 22086
 
 AHEAD: Final = 50
 """Blocks behind the active one that are looked at."""
-JOINT_SHARE: Final = 0.25
-"""Of acceleration and jerk that is left for following the spindle through a joint."""
 SHORTEST_HORIZON: Final = 2.0
 """Blocks of cycles within which the path at the soonest is where the spindle is."""
 
@@ -91,6 +87,7 @@ class ThreadPath(ActiveMotion):
         self._settings, self._source = settings, source
         self._spindle = LeadingSpindle(node, settings.cycle_time)
         self._words = words_of(motion)
+        self._following = Following(settings, self._spindle, self._words.offset)
         self._start = start
         self._motions = [motion]
         self._closed = source is None
@@ -110,9 +107,6 @@ class ThreadPath(ActiveMotion):
         self.phase = Phase.WAITS
         self._profile: Profile | None = None
         self._profile_begin = 0.0
-        self._fading: Fading | None = None
-        self._fading_begin = 0
-        self._sign, self._zero = 1.0, 0.0
         self._speed = abs(self._words.speed)
         self._ramps = Ramps(0.0, 0.0)
         self._retract: RetractMotion | None = None
@@ -257,8 +251,8 @@ class ThreadPath(ActiveMotion):
         if self.phase is not Phase.FOLLOWS or self._retract is not None or state[1] < STANDS:
             return None
         axis = words_of(self._motions[self._block_of(state[0])]).axis
-        lead = self._sign * TURN * axes[axis][1] / state[1]
-        angle = self._sign * (state[0] + self._zero) + self._words.offset
+        lead = self._following.sign * TURN * axes[axis][1] / state[1]
+        angle = self._following.spindle_angle(state[0])
         return ThreadPlace(self._spindle.node, axis, axes[axis][0], lead, angle)
 
     def _point(self, state: MotionState) -> PathPoint:
@@ -306,24 +300,15 @@ class ThreadPath(ActiveMotion):
 
     def _joined(self, motion: LinearMove) -> bool:
         """Appends a motion to a thread that has begun; False if its joint does not fit."""
-        geometry = self._geometry
-        if geometry is None:
+        if self._geometry is None:
             return True
         if self._stops or not self.cuts_thread:
             return False
-        end = geometry.end
-        geometry.append(motion.target, words_of(motion), self._speed)
-        last = len(geometry) - 1
-        reach = end - 0.5 * geometry.zone_of(last)
-        begin = geometry.begin_of(last - 1) + 0.5 * geometry.zone_of(last - 1)
-        out = way_out(self._settings, geometry, last, self._speed)
-        fits = reach >= max(begin, self._ramps.run_up) and end + 0.5 * geometry.zone_of(last) + out <= geometry.end
-        fits = fits and self._state[0] + self._speed * self._horizon < reach
-        fits = fits and not too_fast(self._settings, geometry.slopes_of(last), self._speed)
-        if not fits or bends_too_much(self._settings, geometry.bends_of(last), self._speed):
-            geometry.pop()
+        begin = max(self._ramps.run_up, self._state[0] + self._speed * self._horizon)
+        run_out = joined(self._settings, self._geometry, motion, self._speed, begin)
+        if run_out is None:
             return False
-        self._ramps = self._ramps._replace(run_out=out)
+        self._ramps = self._ramps._replace(run_out=run_out)
         return True
 
     @property
@@ -349,18 +334,18 @@ class ThreadPath(ActiveMotion):
         if self._stops or not self.released or not self._spindle.ready:
             return
         speed = self._spindle.angle.speed
-        self._sign, self._speed = 1.0 if speed > 0.0 else -1.0, abs(speed)
+        self._following.sign, self._speed = 1.0 if speed > 0.0 else -1.0, abs(speed)
         geometry, self._ramps = checked_geometry(self._settings, self._start, self._motions, self._speed)
         limits = self._limits(geometry, [0], self._speed)
         ramp = plan_to_velocity(0.0, 0.0, 0.0, self._speed, limits)
         cycle_time = self._settings.cycle_time
-        angle, speed, _, _ = self._turned(self._cycle + ramp.duration / cycle_time)
+        angle, speed, _, _ = self._following.turned(self._cycle + ramp.duration / cycle_time)
         missing = ramp.end[0] - angle
         turns = ceil(-missing / TURN - ROUNDING)
         begin = self._cycle + (missing + turns * TURN) / speed / cycle_time
         if begin >= self._last_cycle:
             return
-        self._zero = turns * TURN
+        self._following.zero = turns * TURN
         self._geometry, self._profile, self._profile_begin = geometry, ramp, begin
         self.phase = Phase.RUNS_UP
         self._note_begin(geometry)
@@ -373,16 +358,6 @@ class ThreadPath(ActiveMotion):
 
     # the angle of the path
 
-    def _turned(self, cycle: float) -> MotionState:
-        """What the spindle is expected to have turned from the zero passage to when the axes act, in its direction."""
-        angle, speed, gain, jerk = self._spindle.angle.at(cycle + self._settings.delay)
-        sign = self._sign
-        return sign * angle - sign * self._words.offset, sign * speed, sign * gain, sign * jerk
-
-    def _expected(self, cycle: float) -> MotionState:
-        angle, speed, gain, jerk = self._turned(cycle)
-        return angle - self._zero, speed, gain, jerk
-
     def _time(self, cycle: int) -> float:
         """s since the start of the active ramp."""
         return (cycle - self._profile_begin) * self._settings.cycle_time
@@ -392,7 +367,7 @@ class ThreadPath(ActiveMotion):
         if self.phase is Phase.WAITS:
             return self._state
         if self.phase is Phase.FOLLOWS:
-            return self._following(cycle)
+            return self._follow_spindle(cycle)
         assert self._profile is not None
         t = self._time(cycle)
         state = self._profile.state_at(t)
@@ -406,38 +381,28 @@ class ThreadPath(ActiveMotion):
         return state
 
     def _follow_from(self, cycle: int, state: MotionState) -> None:
-        """From a state at `cycle` on the path goes over to the angle that is expected of the spindle."""
         assert self._geometry is not None
-        angle, speed, gain, _ = self._expected(cycle)
-        mismatch = (state[0] - angle, state[1] - speed, state[2] - gain)
-        soon = min(self._geometry.end, state[0] + speed * self._horizon)
-        blocks = range(self._block_of(state[0]), self._block_of(soon) + 1)
-        limits = self._limits(self._geometry, blocks, abs(speed))
-        if self._geometry.in_joint(state[0], soon):
-            limits = Limits(limits.velocity, *[JOINT_SHARE * limit for limit in limits[1:]])
-        self._fading, self._fading_begin = fading(mismatch, self._horizon, gain, limits), cycle
+        self._following.renew(self._geometry, cycle, state, self._horizon, stops=self._stops and self._retract is None)
 
-    def _following(self, cycle: int) -> MotionState | None:
+    def _follow_spindle(self, cycle: int) -> MotionState | None:
         """φ at `cycle` from the spindle; its end, a stop and a retract may come first."""
         geometry = self._geometry
-        assert self._fading is not None and geometry is not None
-        expected = self._expected(cycle)
-        correction = self._fading.at((cycle - self._fading_begin) * self._settings.cycle_time)
-        state = (
-            expected[0] + correction[0],
-            expected[1] + correction[1],
-            expected[2] + correction[2],
-            expected[3] + correction[3],
-        )
+        assert geometry is not None
+        state = self._following.at(cycle)
         limits = self._limits_at_end(geometry)
         way = stopping_distance(state[1], state[2], limits.deceleration, limits.jerk)
         if state[0] + way > geometry.end:
             self._run_out(geometry)
             return self._next(cycle)
-        if self._stops and self._may_stop(state):
+        if self._stops and (self._lands(cycle, state, way) or self._may_stop(state)):
             self._ramp_down()
             return self._next(cycle)
         return state
+
+    def _lands(self, cycle: int, state: MotionState, way: float) -> bool:
+        """A spindle that stops comes to rest where the path would, or stands already."""
+        rest = self._following.rest() if self._retract is None else None
+        return rest is not None and (state[0] + way > rest[0] or cycle + 1 >= rest[1])
 
     def _limits_at_end(self, geometry: ThreadGeometry) -> Limits:
         return self._limits(geometry, [len(geometry) - 1], max(self._state[1], STANDS))
@@ -487,6 +452,7 @@ class ThreadPath(ActiveMotion):
         return not self._spindle.stops or state[1] < STANDS
 
     def _ramp_down(self) -> None:
+        """To a standstill as soon as possible; with a spindle that stops where that does, if it is not too late."""
         geometry = self._geometry
         assert geometry is not None
         angle, speed, gain, _ = self._state
@@ -494,6 +460,9 @@ class ThreadPath(ActiveMotion):
         blocks = [number] if number + 1 >= len(geometry) else [number, number + 1]
         limits = self._limits(geometry, blocks, max(speed, STANDS))
         ramp = plan_to_velocity(angle, speed, gain, 0.0, limits)
+        rest = self._following.rest() if self._spindle.stops and self._retract is None else None
+        if rest is not None and ramp.end[0] < rest[0] < geometry.end:
+            ramp = plan_to_position(angle, speed, gain, rest[0], limits)
         if ramp.end[0] <= geometry.end:
             self._ramp(Phase.STOPS, ramp)
         else:
