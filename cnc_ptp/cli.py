@@ -47,9 +47,13 @@ def run_options(function: Callable[..., Any]) -> Callable[..., Any]:
     for option in (
         start_options,
         click.option("--strict", is_flag=True, help="A refused command makes the exit status 1."),
+        click.option("--record-when", help="Begin the recording when a field has this value: 'x.set_velocity != 0'."),
         click.option("--record", type=click.Path(dir_okay=False), help="Write an MCAP recording."),
         click.option(
             "--duration", type=DURATION, help="End after this many seconds; default: when everything is finished."
+        ),
+        click.option(
+            "--plc", type=click.Path(dir_okay=False), help="PLC in a file: a Python class Plc with cycle(io)."
         ),
         click.option("--scenario", type=click.Path(dir_okay=False), help="Timed PLC commands (YAML)."),
         DIALECT,
@@ -96,6 +100,7 @@ def simulate_command(**options: Any) -> None:
     """Run a machine offline, as fast as possible."""
     from cnc_ptp.commands.run.simulate import simulate
 
+    require_recording(options)
     sys.exit(simulate(begin=take_start(options, options["program"]), **options))
 
 
@@ -116,12 +121,19 @@ def run_command(**options: Any) -> None:
         start_server()  # first: it imports for all nodes, which takes as long as what comes now
     from cnc_ptp.commands.run.run import run
 
+    require_recording(options)
     if options["stay"] and options["duration"] is not None:
         raise click.UsageError("--stay and --duration exclude each other: --duration stays for that many seconds.")
     if options["stay"] and options["free_run"]:
         raise click.UsageError("--stay and --free-run exclude each other: a machine is commanded in real time.")
     ros_arguments().require_for_all_nodes("cnc_ptp run")
     sys.exit(run(begin=take_start(options, options["program"]), **options))
+
+
+def require_recording(options: dict[str, Any]) -> None:
+    """Raises UsageError for a trigger without a recording."""
+    if options["record_when"] is not None and options["record"] is None:
+        raise click.UsageError("--record-when needs --record")
 
 
 COMPLETE_FROM = click.option(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 import sys
 import time
+from collections.abc import Callable
 from types import FrameType, TracebackType
 
 INTERRUPTED = 26106
@@ -22,7 +23,9 @@ def end_command(number: int, frame: FrameType | None) -> None:
 class EndRequest:
     """Takes the signals from its making to `restore`, or for a `with` block; an active callback is finished first."""
 
-    def __init__(self) -> None:
+    def __init__(self, break_in: Callable[[FrameType | None], None] = lambda frame: None) -> None:
+        """`break_in` is called with each signal; it may raise an exception out of what is executed."""
+        self._break_in = break_in
         self.number = 0
         """The last signal that came, 0 = none."""
         self.deadline = 0.0
@@ -33,6 +36,7 @@ class EndRequest:
     def _handle(self, number: int, frame: FrameType | None) -> None:
         self.number = number
         self._count += 1
+        self._break_in(frame)
 
     @property
     def given(self) -> bool:

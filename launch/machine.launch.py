@@ -14,8 +14,10 @@ OPTIONS = {
     "program": "NC program for the first channel",
     "dialect": "vocabulary of the program: twincat or iso; default: that of the machine file",
     "scenario": "timed PLC commands (YAML)",
+    "plc": "PLC in a file: Python with a class Plc",
     "duration": "seconds until the run ends; default: when everything is finished",
     "record": "MCAP recording to write",
+    "record_when": "condition with which the recording begins: x.set_velocity != 0",
     "state_rate": "live states a second, 0 = none",
     "namespace": "ROS namespace of all nodes",
 }
@@ -48,6 +50,7 @@ def start(context):
 def separate_nodes(given, switches, namespace):
     """The end of the clock ends the launch; the recorder, signalled to end, first takes the last messages."""
     from cnc_ptp.commands.output_file import check_recording
+    from cnc_ptp.machine.plc_file import check_plc
     from cnc_ptp.machine.run_entries import read_entries
     from cnc_ptp.machine.runner import CLOCK
     from cnc_ptp.nodes.supervisor import RunOptions, command_lines
@@ -59,8 +62,10 @@ def separate_nodes(given, switches, namespace):
     options = RunOptions(
         **given, duration=duration, free_run=switches["free_run"], stay=switches["stay"], state_rate=rate
     )
-    check_recording(options.record, machine_file=options.machine, NC_program=options.program, scenario=options.scenario)
+    inputs = {"NC_program": options.program, "scenario": options.scenario, "PLC_file": options.plc}
+    check_recording(options.record, machine_file=options.machine, **inputs)
     machine = read_machine(options.machine)
+    check_plc(machine, options.plc)
     read_entries(machine, program=options.program, scenario=options.scenario, dialect=options.dialect)
     observers = [RECORDER] if options.record else []
     return [

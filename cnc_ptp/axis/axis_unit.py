@@ -18,6 +18,7 @@ from cnc_ptp.axis.homing_commands import HomingCommands
 from cnc_ptp.axis.jog_commands import JogCommands
 from cnc_ptp.axis.monitoring import MOVING_ALONE, Monitoring
 from cnc_ptp.axis.override_commands import OverrideCommands
+from cnc_ptp.axis.parameter_commands import ParameterCommands
 from cnc_ptp.axis.power_commands import PowerCommands
 from cnc_ptp.axis.probe import Probe
 from cnc_ptp.axis.ptp_commands import PtpCommands
@@ -92,6 +93,7 @@ class AxisUnit(Unit):
             ExternalCommands(self._axis),
             CouplingCommands(self._axis, axes=known, cycle_time=cycle_time),
             DecouplingCommands(self._axis),
+            ParameterCommands(self._axis, cycle_time=cycle_time),
             ControlCommands(self._loop, f"axis {parameters.name}"),
         )
         self._last_block: AxisBlock | None = None

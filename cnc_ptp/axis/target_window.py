@@ -8,14 +8,18 @@ class TargetWindow:
 
     def __init__(self, *, window: float, cycles: int) -> None:
         """`window` in mm (deg) to each side of the target; `cycles` after which it must be there, 0 = any time."""
-        self._window = window
-        self._cycles = cycles
+        self.set(window=window, cycles=cycles)
         self._has_target = False
         self._watching = False
         self._has_moved = False
         self._standing_since: int | None = None
         self.target: float | None = None
         """Where the motion was to end; None: wherever the setpoint comes to rest."""
+
+    def set(self, *, window: float, cycles: int) -> None:
+        """Another window and time."""
+        self._window = window
+        self._cycles = cycles
 
     @property
     def watching(self) -> bool:

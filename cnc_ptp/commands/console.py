@@ -46,7 +46,7 @@ def print_error(error: CncError) -> None:
         console.print(f"note: {getattr(error, 'note', '')}", markup=False)
 
 
-def print_note_of_idle_run(*job: object, options: str = "--program, --scenario or --duration") -> None:
+def print_note_of_idle_run(*job: object, options: str = "--program, --scenario, --plc or --duration") -> None:
     """A note that there was nothing to do, because none of the `options` was given."""
     if all(part is None for part in job):
         text = f"note: there was nothing to do, give {options}"

@@ -7,12 +7,14 @@ from collections.abc import Iterable, Iterator, Mapping
 from cnc_ptp.machine.runner import UnitRunner
 from cnc_ptp.machine.wiring import Inputs, wiring
 from cnc_ptp.parameters import MachineParameters
-from cnc_ptp.plc.plc_unit import at_rest
+from cnc_ptp.plc.plc_unit import PlcUnit, at_rest
 from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Event, PlcBlock
 from cnc_ptp.protocol.unit import PLC, Unit
 
 STUCK_TIME = 10.0
 """Seconds without any motion after which a program that waits is aborted: nobody will help it."""
+PLC_TIME = 60.0
+"""The same while a PLC in a file runs and commands nothing: it may be waiting for a time."""
 
 
 class Output:
@@ -41,7 +43,7 @@ class OfflineMachine:
         self._runners = {name: UnitRunner(unit, watchdog_cycles=watchdog_cycles) for name, unit in units.items()}
         self._blocks: dict[str, CycleBlock] = {}
         self._first_cycle = 0
-        self._stuck_limit = round(STUCK_TIME * 1e6 / machine.cycle_time_us)
+        self._cycle_time = machine.cycle_time_us * 1e-6
         self._stuck_cycles = 0
 
     def runner(self, name: str) -> UnitRunner:
@@ -105,15 +107,21 @@ class OfflineMachine:
                 self._watch_progress(plc, outputs)
 
     def _watch_progress(self, plc: PlcBlock, outputs: Outputs) -> None:
-        reason = self._what_is_waited_for(outputs) if plc.scenario_done and not plc.commands else ""
+        unit = self._runners[PLC].unit
+        with_program = isinstance(unit, PlcUnit) and unit.program_runs
+        commands_nothing = plc.scenario_done and not plc.commands
+        reason = self._what_is_waited_for(outputs, with_program) if commands_nothing else ""
         self._stuck_cycles = self._stuck_cycles + plc.count if reason else 0
-        if self._stuck_cycles >= self._stuck_limit:
+        if self._stuck_cycles >= round((PLC_TIME if with_program else STUCK_TIME) / self._cycle_time):
             self._stuck_cycles = 0
-            text = f"{reason}, but the scenario is finished"
-            self._runners[PLC].command(Command(PLC, "abort", {"reason": text}))
+            but = f"the PLC has commanded nothing for {PLC_TIME:g} s" if with_program else "the scenario is finished"
+            self._runners[PLC].command(Command(PLC, "abort", {"reason": f"{reason}, but {but}"}))
 
-    def _what_is_waited_for(self, outputs: Outputs) -> str:
-        """Why the run cannot continue; empty while anything moves. Channel or master answer for their axes."""
+    def _what_is_waited_for(self, outputs: Outputs, with_program: bool) -> str:
+        """Why the run cannot continue; empty while anything moves. Channel or master answer for their axes.
+
+        `with_program`: a PLC in a file has not said that the run may end.
+        """
         reasons = []
         for output in outputs.values():
             unit = self._runners[output.name].unit
@@ -121,4 +129,4 @@ class OfflineMachine:
                 reasons.append(reason)
             elif not unit.led and not at_rest(output.block):
                 return ""
-        return "; ".join(reasons)
+        return "; ".join(reasons) or ("everything is at a standstill" if with_program else "")

@@ -10,6 +10,7 @@ from cnc_ptp.axis.axis_unit import AxisUnit
 from cnc_ptp.channel.channel_unit import ChannelUnit
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.plc.plc_unit import PlcUnit
+from cnc_ptp.plc.program.plc_program import PlcFile
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import EventValue, Severity
 from cnc_ptp.protocol.commands import sources_of
@@ -52,11 +53,17 @@ def wiring(machine: MachineParameters) -> dict[str, Inputs]:
 
 
 def build_unit(
-    machine: MachineParameters, name: str, *, scenario: Iterable[Entry] = (), end_when_idle: bool = True
+    machine: MachineParameters,
+    name: str,
+    *,
+    scenario: Iterable[Entry] = (),
+    end_when_idle: bool = True,
+    plc_file: PlcFile | None = None,
 ) -> Unit:
-    """The unit `name` of the machine, at position 0, at a standstill. `scenario` and `end_when_idle` are for the PLC.
+    """The unit `name` of the machine, at position 0, at a standstill.
 
-    The PLC, whose parameters are those of /machine, publishes the warnings of the whole machine file.
+    `scenario`, `end_when_idle` and `plc_file` are for the PLC, whose parameters are those of /machine; it publishes
+    the warnings of the whole machine file. Raises CncError 25104 for a PLC file.
     """
     cycle_time = machine.cycle_time_us * 1e-6
     kinds = unit_kinds(machine)
@@ -83,6 +90,8 @@ def build_unit(
         cycle_time=cycle_time,
         end_when_idle=end_when_idle,
     )
+    if plc_file is not None:
+        plc.take_program(plc_file, machine.sets)
     for notice in machine.warnings:
         values = [EventValue(*value) for value in notice.values]
         plc.event(0, Severity.WARNING, notice.error_id, str(notice), values=values)
@@ -90,9 +99,14 @@ def build_unit(
 
 
 def build_units(
-    machine: MachineParameters, *, scenario: Iterable[Entry] = (), end_when_idle: bool = True
+    machine: MachineParameters,
+    *,
+    scenario: Iterable[Entry] = (),
+    end_when_idle: bool = True,
+    plc_file: PlcFile | None = None,
 ) -> Mapping[str, Unit]:
-    """All units, in the order in which the blocks of one tick are computed."""
+    """All units, in the order in which the blocks of one tick are computed. Raises CncError 25104 for a PLC file."""
     return {
-        name: build_unit(machine, name, scenario=scenario, end_when_idle=end_when_idle) for name in unit_kinds(machine)
+        name: build_unit(machine, name, scenario=scenario, end_when_idle=end_when_idle, plc_file=plc_file)
+        for name in unit_kinds(machine)
     }

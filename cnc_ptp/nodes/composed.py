@@ -11,6 +11,7 @@ from rclpy.node import Node
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import EndRequest
+from cnc_ptp.machine.plc_file import read_plc
 from cnc_ptp.machine.run_entries import read_entries
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import process
@@ -51,7 +52,7 @@ def _run(
     recorder = None
     if options.record:  # before the units: it takes each block first
         machine_yaml = machine_text(options.machine)
-        recorder = RecorderNode(machine, options.record, machine_yaml, handover=handover)
+        recorder = RecorderNode(machine, options.record, machine_yaml, when=options.record_when, handover=handover)
     clock = ClockNode(
         machine,
         wait_for=observers_of(options),
@@ -114,7 +115,8 @@ def unit_nodes(machine: MachineParameters, options: RunOptions, **of_nodes: Any)
             program, scenario, dialect, begin = options.program, options.scenario, options.dialect, options.begin
             entries = read_entries(machine, program=program, scenario=scenario, dialect=dialect, begin=begin)
             idle_ends = options.duration is None and not options.stay
-            nodes.append(PlcBridgeNode(machine, scenario=entries, end_when_idle=idle_ends, **of_nodes))
+            file = None if options.plc is None else read_plc(options.plc)
+            nodes.append(PlcBridgeNode(machine, scenario=entries, plc_file=file, end_when_idle=idle_ends, **of_nodes))
         else:
             nodes.append(UNIT_NODES[kind](machine, name, **of_nodes))
         nodes[-1].setup()

@@ -13,6 +13,7 @@ import click
 
 from cnc_ptp import msg
 from cnc_ptp.axis.jog_commands import JOG
+from cnc_ptp.machine.plc_file import read_plc
 from cnc_ptp.machine.run_entries import read_entries
 from cnc_ptp.machine.silence import Silence
 from cnc_ptp.machine.wiring import build_unit
@@ -21,11 +22,13 @@ from cnc_ptp.nodes.bridge.coupling_services import CouplingServices
 from cnc_ptp.nodes.bridge.jog_topics import PATIENCE as JOG_PATIENCE
 from cnc_ptp.nodes.bridge.jog_topics import JogTopics
 from cnc_ptp.nodes.bridge.joint_states import JointStates
+from cnc_ptp.nodes.bridge.plc_watch import PlcWatch
 from cnc_ptp.nodes.bridge.sequence import is_newer
 from cnc_ptp.nodes.topics import LIFE_SIGN, PLC_INPUT, PLC_TOPICS, plc_quality, plc_topic
 from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.parameters import AxisParameters, ChannelParameters, MachineParameters, SpindleParameters, read_machine
 from cnc_ptp.plc.plc_unit import PlcUnit
+from cnc_ptp.plc.program.plc_program import PlcFile
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import Command, CycleBlock, Severity
 from cnc_ptp.protocol.unit import PLC
@@ -51,10 +54,19 @@ class PlcBridgeNode(UnitNode):
     """
 
     def __init__(
-        self, machine: MachineParameters, *, scenario: Iterable[Entry] = (), end_when_idle: bool = True, **options: Any
+        self,
+        machine: MachineParameters,
+        *,
+        scenario: Iterable[Entry] = (),
+        plc_file: PlcFile | None = None,
+        end_when_idle: bool = True,
+        **options: Any,
     ) -> None:
         entries = [without_text(entry) for entry in scenario]
-        super().__init__(machine, build_unit(machine, PLC, scenario=entries, end_when_idle=end_when_idle), **options)
+        unit = build_unit(machine, PLC, scenario=entries, end_when_idle=end_when_idle, plc_file=plc_file)
+        super().__init__(machine, unit, **options)
+        if self.plc.program is not None:
+            self.plc.program.guard = PlcWatch(machine.watchdog_ms)
         self._sequence: dict[str, int] = {}
         self._last: dict[str, str] = {}
         self._served: set[str] = set()
@@ -249,15 +261,22 @@ def without_text(entry: Entry) -> Entry:
 @click.option("--program", type=click.Path(dir_okay=False), help="NC program that the first channel loads and starts.")
 @node_command_line.DIALECT
 @click.option("--scenario", type=click.Path(dir_okay=False), help="Timed PLC commands (YAML).")
+@click.option("--plc", type=click.Path(dir_okay=False), help="PLC in a file: a Python class Plc with cycle(io).")
 @click.option("--stay", is_flag=True, help="Continue when everything is at a standstill, instead of ending the run.")
 @start_options
 @node_command_line.RECORDERS
 @node_command_line.STATE_RATE
 @node_command_line.FREE_RUN
 def command(
-    machine: str, program: str | None, dialect: str | None, scenario: str | None, stay: bool, **options: Any
+    machine: str,
+    program: str | None,
+    dialect: str | None,
+    scenario: str | None,
+    plc: str | None,
+    stay: bool,
+    **options: Any,
 ) -> None:
-    """Runs the PLC interface of MACHINE as a ROS node; plays a scenario."""
+    """Runs the PLC interface of MACHINE as a ROS node; plays a scenario, runs a PLC in a file."""
     begin = take_start(options, program)
 
     def make() -> PlcBridgeNode:
@@ -265,6 +284,7 @@ def command(
         node = PlcBridgeNode(
             parameters,
             scenario=read_entries(parameters, program=program, scenario=scenario, dialect=dialect, begin=begin),
+            plc_file=None if plc is None else read_plc(plc),
             end_when_idle=not stay,
             **options,
         )

@@ -43,6 +43,7 @@ from cnc_ptp.nodes.topics import (
 )
 from cnc_ptp.parameters import MachineParameters, machine_text, read_machine
 from cnc_ptp.protocol.blocks import CycleBlock, CycleTick, Event, Severity
+from cnc_ptp.recording.trigger import Condition, make_recording
 from cnc_ptp.recording.writer import Recording
 from cnc_ptp.wire.block_codec import head_of, with_plain_header
 from cnc_ptp.wire.ticks import Tick, decode_tick
@@ -71,11 +72,13 @@ class RecorderNode(PollingNode):
         path: str,
         machine_yaml: str,
         *,
+        when: str | None = None,
         handover: Handover | None = None,
     ) -> None:
-        """`handover`: from the other nodes of this process."""
+        """`when`: the condition with which it begins. `handover`: from the other nodes of this process."""
         super().__init__(RECORDER, enable_rosout=False)
         require_writable(path)
+        self._condition = None if when is None else Condition(when, unit_kinds(machine))
         self._machine_yaml = machine_yaml
         self._path = path
         self._cycle_ns = machine.cycle_time_us * 1000
@@ -159,7 +162,7 @@ class RecorderNode(PollingNode):
             self._free_run = not message.scheduled_monotonic_ns
             if not self._free_run:
                 process.take_priority()
-            self._recording = Recording(self._path, self._machine_yaml, start_ns, self._cycle_ns)
+            self._recording = make_recording(self._path, self._machine_yaml, start_ns, self._cycle_ns, self._condition)
             for record in self._early:
                 record()
             self._early.clear()
@@ -261,11 +264,12 @@ def _namespace(logger: str) -> str:
 @click.command()
 @node_command_line.MACHINE
 @click.argument("output", type=click.Path(dir_okay=False))
-def command(machine: str, output: str) -> None:
+@click.option("--when", help="Begin when a field has this value: 'x.set_velocity != 0'.")
+def command(machine: str, output: str, when: str | None) -> None:
     """Records the graph of MACHINE to the MCAP file OUTPUT."""
 
     def make() -> RecorderNode:
-        return RecorderNode(read_machine(machine), output, machine_text(machine))
+        return RecorderNode(read_machine(machine), output, machine_text(machine), when=when)
 
     sys.exit(process.run_node(make, name=RECORDER, settled=lambda node: node.settled))
 

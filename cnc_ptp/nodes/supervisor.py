@@ -75,6 +75,10 @@ class RunOptions:
     """Vocabulary of the program, None = as the machine file says."""
     begin: StartPoint | None = None
     """Where the program begins, if not at its beginning."""
+    plc: str | None = None
+    """A PLC in a file."""
+    record_when: str | None = None
+    """The condition with which the recording begins; without it with the run."""
 
 
 class Supervisor:
@@ -291,16 +295,18 @@ def command_lines(
     program += ["--dialect", options.dialect] if options.program and options.dialect else []
     begin = [*start_words(options.begin)]
     if options.record:
-        yield RECORDER, ["recorder", options.machine, options.record]
+        when = ["--when", options.record_when] if options.record_when else []
+        yield RECORDER, ["recorder", options.machine, options.record, *when]
     for name, kind in unit_kinds(machine).items():
         if kind != "plc":
             first = program if options.begin is None and name == next(iter(machine.channels), None) else []
             yield name, [MODULES[kind], options.machine, name, *first, *units]
     scenario = ["--scenario", options.scenario] if options.scenario else []
+    plc = ["--plc", options.plc] if options.plc else []
     stay = ["--stay"] if options.stay or options.duration is not None else []
     yield (
         PLC,
-        ["plc_bridge", options.machine, *program, *begin, *scenario, *stay, *free_run, *units],
+        ["plc_bridge", options.machine, *program, *begin, *scenario, *plc, *stay, *free_run, *units],
     )
     duration = ["--duration", str(options.duration)] if options.duration is not None else []
     wait_for = [word for name in observers for word in ("--wait-for", name)]

@@ -118,6 +118,7 @@ SERVICES: dict[str, dict[str, Any]] = {
         "acknowledge": srv.Acknowledge,
         "auto_acknowledge": srv.SetSwitch,
         "set_life_sign": srv.SetHold,
+        "set_input": srv.SetInput,
         "stop_all": srv.Execute,
     },
 }

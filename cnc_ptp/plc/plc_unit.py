@@ -1,4 +1,4 @@
-"""The PLC: plays the scenario, passes on commands from topics, acknowledges M functions, ends the run."""
+"""The PLC: plays the scenario, calls a PLC in a file, passes on commands from topics, acknowledges, ends the run."""
 
 from __future__ import annotations
 
@@ -8,8 +8,10 @@ from typing import ClassVar
 
 from cnc_ptp.axis.external_commands import SETPOINTS
 from cnc_ptp.errors import CncError
-from cnc_ptp.parameters import AxisParameters
+from cnc_ptp.parameters import AxisParameters, ParameterSet
 from cnc_ptp.plc.axis_groups import AxisGroups
+from cnc_ptp.plc.program.plc_io import PlcIo
+from cnc_ptp.plc.program.plc_program import PlcFile, PlcProgram
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.plc.setpoint_file import placed
 from cnc_ptp.plc.setpoint_queue import SetpointQueue
@@ -77,8 +79,28 @@ class PlcUnit(Unit):
         self._idle_cycles = 0
         self._lost: set[str] = set()
         self._failed = False
+        self._inputs: dict[str, float] = {}
+        self.program: PlcProgram | None = None
+        """A PLC in a file."""
         self.reported: Mapping[str, CycleBlock] = {}
         """The units' blocks previous to the one computed last."""
+
+    def take_program(self, file: PlcFile, sets: Mapping[str, ParameterSet]) -> None:
+        """Makes the PLC of a file, which `step` calls; `sets`: parameters of the units. Raises CncError 25104."""
+        io = PlcIo(
+            self._kinds,
+            sets,
+            cycle_time=self._cycle_time,
+            requests=self._pending,
+            inputs=self._inputs,
+            finished=bool(self._scenario),
+        )
+        self.program = PlcProgram(file, io)
+
+    @property
+    def program_runs(self) -> bool:
+        """A PLC in a file is called with each block."""
+        return self.program is not None and self.program.runs
 
     def is_coupled(self, axis: str) -> bool:
         """True for a slave, as it has reported."""
@@ -118,6 +140,11 @@ class PlcUnit(Unit):
         """Acknowledges every request automatically (the default), or leaves that to `acknowledge`."""
         self._auto_acknowledge = enabled
 
+    def do_set_input(self, cycle: int, *, name: str, value: float) -> str | None:
+        """A value from outside, for a PLC in a file."""
+        self._inputs[name] = value
+        return None if self.program_runs else f"plc {self.name}: set_input without effect: no PLC in a file runs"
+
     def do_set_life_sign(self, cycle: int, *, enabled: bool) -> None:
         """Stops or resumes the life sign; without it all units stop after the watchdog time."""
         self._life_sign_on = enabled
@@ -130,6 +157,8 @@ class PlcUnit(Unit):
         """
         self._scenario.clear()
         self.setpoints.clear()
+        if self.program is not None:
+            self.program.runs = False
         self._end_when_idle = True
         for unit, kind in self._kinds.items():
             block = self.reported.get(unit)
@@ -155,10 +184,11 @@ class PlcUnit(Unit):
         """Harness: the run cannot continue; it has failed."""
         self._fail(cycle, CANNOT_GO_ON, reason)
 
-    def _fail(self, cycle: int, error_id: int, reason: str) -> None:
+    def _fail(self, cycle: int, error_id: int, reason: str, line: int = 0) -> None:
+        """`line` of a PLC in a file."""
         self._failed = True
         text = f"plc {self.name}: {reason}; everything is stopped and the run ends"
-        self.event(cycle, Severity.ERROR, error_id, text)
+        self.event(cycle, Severity.ERROR, error_id, text, line)
         self.do_stop_all(cycle)
 
     def _warn(self, cycle: int, number: int, text: str) -> None:
@@ -173,7 +203,9 @@ class PlcUnit(Unit):
         self._outgoing += self._groups.report(first_cycle, inputs)
         self.setpoints.watch(inputs)
         self._play_scenario(first_cycle)
-        self._answer_requests(first_cycle, inputs)
+        self._note_requests(inputs)
+        self._run_program(tick, inputs)
+        self._acknowledge_all(first_cycle)
         self._outgoing += spindle_answers(inputs, changes_gears=self._auto_acknowledge)
         self._outgoing += self.setpoints.take(first_cycle, count)
         run_done = self._end_when_idle and self._run_done(count, inputs)
@@ -183,6 +215,8 @@ class PlcUnit(Unit):
         for command in commands:
             self._commands_sent += 1
             command.id = self._commands_sent
+        if self.program is not None:
+            self.program.io.note_writes(commands)
         return PlcBlock(
             first_cycle,
             count,
@@ -204,12 +238,31 @@ class PlcUnit(Unit):
             else:
                 self._outgoing.append(command)
 
-    def _answer_requests(self, cycle: int, inputs: Mapping[str, CycleBlock]) -> None:
+    def _run_program(self, tick: CycleTick, inputs: Mapping[str, CycleBlock]) -> None:
+        """What a PLC in a file commands; its fault stops everything."""
+        if self.program is None or not self.program.runs:
+            return
+        cycle = tick.first_cycle
+        fault = self.program.run(tick, inputs, self._lost)
+        for text in self.program.io.take_events():
+            self.event(cycle, Severity.INFO, 0, f"plc {self.name}: {text}")
+        for command in self.program.io.take_commands():
+            if command.target == self.name:
+                self.command(command, cycle)
+            else:
+                self._outgoing.append(command)
+        if fault is not None:
+            self._fail(cycle, fault.number, fault.reason, fault.line)
+
+    def _note_requests(self, inputs: Mapping[str, CycleBlock]) -> None:
         for name, block in inputs.items():
             if isinstance(block, ChannelBlock):
-                self._pending |= {request.id: request for request in block.requests if request.acknowledge_needed}
+                self._pending.update({request.id: request for request in block.requests if request.acknowledge_needed})
                 if block.done:  # a program that is finished, or was aborted, waits for nothing
-                    self._pending = {n: r for n, r in self._pending.items() if r.channel != name}
+                    for number in [n for n, request in self._pending.items() if request.channel == name]:
+                        del self._pending[number]
+
+    def _acknowledge_all(self, cycle: int) -> None:
         if self._auto_acknowledge:
             for request_id in list(self._pending):
                 self.do_acknowledge(cycle, id=request_id)
@@ -218,6 +271,7 @@ class PlcUnit(Unit):
         """Everything has been at a standstill for the settling time; spindles that still turn are stopped first."""
         expected = set(self._kinds) - self._lost
         idle = not (self._scenario or self._outgoing or self.setpoints) and expected <= inputs.keys()
+        idle = idle and (not self.program_runs or (self.program is not None and self.program.io.finished))
         idle = idle and all(at_rest(block) for block in inputs.values())
         self._idle_cycles = self._idle_cycles + count if idle else 0
         if self._idle_cycles * self._cycle_time < SETTLING_TIME:

@@ -45,6 +45,7 @@ COMMAND_TEXTS: Mapping[str, Mapping[str, str]] = {
         "set_coupling_factor": "new factor of a linear slave",
         "set_cyclic_factor": "new factor of a cyclic slave",
         "decouple": "ends the coupling, in motion too",
+        "write_parameter": "changes a parameter until the end of the run",
         "set_feedforward": "switches and weights feedforward",
         "reset_feedforward": "feedforward off, weight 100 %",
         "set_friction_compensation": "switches friction compensation",
@@ -89,6 +90,7 @@ COMMAND_TEXTS: Mapping[str, Mapping[str, str]] = {
         "acknowledge": "acknowledges a handshake request of any channel",
         "auto_acknowledge": "whether requests are acknowledged with the next cycle block",
         "set_life_sign": "life sign of the PLC; without it all units stop",
+        "set_input": "a value from outside for a [PLC in a file](plc.md#inputs)",
         "stop_all": "stops everything on its ramp",
     },
 }
@@ -151,6 +153,8 @@ ARGUMENT_TEXTS: Mapping[str, ArgumentText] = {
     "pass_number": ArgumentText("", "of several passes of the line", "the first one"),
     "level": ArgumentText("", "skip level 1 … 10 (`/` is `/1`)", "1"),
     "id": ArgumentText("", "number of the request"),
+    "name": ArgumentText("", "of the input"),
+    "parameter": ArgumentText("", "P-AXIS-00236 or P-MACH-00014"),
 }
 """By name; those that differ for single commands follow below."""
 
@@ -176,6 +180,8 @@ SPECIAL_TEXTS: Mapping[tuple[str, str, str], ArgumentText] = {
     ("spindle", "orient", "speed_rpm"): ArgumentText("rpm", "speed of the positioning", "P-AXIS-00209"),
     ("spindle", "orient", "direction"): ArgumentText("", "of rotation", "the rules of M19"),
     ("spindle", "couple", "master"): ArgumentText("", "name of the master spindle"),
+    ("axis", "write_parameter", "value"): ArgumentText("", "in the unit of its list"),
+    ("plc", "set_input", "value"): ArgumentText("", "a number; 1 is on, 0 is off"),
     ("channel", "single_block", "mode"): ArgumentText("", "behind what the program stops", "`block`"),
     ("channel", "load", "text"): ArgumentText("", "the program itself", "`program` is read"),
 }

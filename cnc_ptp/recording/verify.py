@@ -18,6 +18,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import ChannelBlock, CycleBlock, PlcBlock
 from cnc_ptp.recording.blocks import Cycles, StateBlock, StateKind, block_rows, fill_states, kind_of, thread_kind
 from cnc_ptp.recording.reader import Recorded
+from cnc_ptp.recording.trigger import RECORD_WHEN
 from cnc_ptp.recording.writer import topic_of
 from cnc_ptp.wire.block_codec import codec_of
 from cnc_ptp.wire.layout import Layout, Records
@@ -245,6 +246,10 @@ class _Check:
             self.compare_rows(self.rows[begin:end][matched], computed[partner[matched]])
 
     def note_missing(self, cycles: Cycles) -> None:
+        """Not those before a trigger, and behind the end of a file that was cut off."""
+        if RECORD_WHEN in self.recorded.metadata:
+            first = int(self.cycles[0]) if len(self.cycles) else np.iinfo(np.int64).max
+            cycles = cycles[cycles.astype(np.int64) >= first]
         if not self.recorded.complete:
             last = int(self.cycles[-1]) if len(self.cycles) else -1
             cycles = cycles[cycles.astype(np.int64) <= last]

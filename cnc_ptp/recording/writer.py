@@ -6,7 +6,7 @@ passed.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from itertools import groupby
 from pathlib import Path
@@ -34,6 +34,7 @@ MACHINE_FILE = "machine.yaml"
 METADATA = "cnc_ptp"
 MISSING = "missing"
 """Key of the metadata: what a recording that was closed for a dead recorder does not have."""
+NO_NOTES: Mapping[str, str] = {}
 BEFORE_ALL = -1  # end of the chunk before the first block
 
 
@@ -154,7 +155,9 @@ class Recording:
         chunk_seconds: float = 1.0,
         flush_seconds: float = 0.5,
         level: int = 1,
+        notes: Mapping[str, str] = NO_NOTES,
     ) -> None:
+        """`notes` for its metadata."""
         self.path = Path(path)
         self.stamps = Stamps(start_ns, cycle_time_ns)
         self._chunk_cycles = max(1, round(chunk_seconds * 1e9 / cycle_time_ns))
@@ -166,7 +169,8 @@ class Recording:
         self._closed = False
         self._file = McapFile(self.path, level)
         self.attachment(MACHINE_FILE, "application/yaml", machine_yaml)
-        self._file.metadata(METADATA, {"start_ns": str(start_ns), "cycle_time_ns": str(cycle_time_ns)})
+        times = {"start_ns": str(start_ns), "cycle_time_ns": str(cycle_time_ns)}
+        self._file.metadata(METADATA, {**times, **notes})
 
     def block(self, name: str, block: CycleBlock, *, handshakes: bool = True) -> None:
         """`/<name>/block` and, per cycle, `/<name>/state`.

@@ -9,13 +9,16 @@ from cnc_ptp.channel.program_report import cut_off_notes, time_lines
 from cnc_ptp.commands.console import RUN_FAILED, print_faults, print_missing_folders, print_note_of_idle_run
 from cnc_ptp.commands.output_file import check_recording
 from cnc_ptp.commands.run.progress import RunProgress
+from cnc_ptp.machine.plc_file import check_plc
 from cnc_ptp.machine.run_entries import read_entries
+from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nc.block_search import StartPoint
 from cnc_ptp.nodes.composed import run_composed
 from cnc_ptp.nodes.monitor import RunMonitor
 from cnc_ptp.nodes.supervisor import RunOptions, Supervisor
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.recording.node_figures import BLOCKS, CAME_TWICE, LOST_BLOCKS, following_error
+from cnc_ptp.recording.trigger import Condition
 
 
 def run(
@@ -31,17 +34,24 @@ def run(
     state_rate: float | None = None,
     dialect: str | None = None,
     begin: StartPoint | None = None,
+    plc: str | None = None,
+    record_when: str | None = None,
 ) -> int:
     """Runs the graph; prints a summary. Status 1 when a unit ended in error or a node died.
 
     `stay`: until Ctrl-C, which is no error when everything is at a standstill. `strict`: status 1 also when a
     command was refused.
     """
-    check_recording(record, machine_file=machine, NC_program=program, scenario=scenario)
+    check_recording(record, machine_file=machine, NC_program=program, scenario=scenario, PLC_file=plc)
     parameters = read_machine(machine)
     print_missing_folders(parameters)
     read_entries(parameters, program=program, scenario=scenario, dialect=dialect, begin=begin)
-    options = RunOptions(machine, program, scenario, duration, record, free_run, stay, state_rate, dialect, begin)
+    check_plc(parameters, plc)
+    if record_when is not None:
+        Condition(record_when, unit_kinds(parameters))
+    options = RunOptions(
+        machine, program, scenario, duration, record, free_run, stay, state_rate, dialect, begin, plc, record_when
+    )
     with RunProgress() as progress:
 
         def show(monitor: RunMonitor) -> None:
@@ -55,8 +65,8 @@ def run(
             supervisor = Supervisor(parameters, options, show=show, watched=progress.visible)
             monitor, failures = supervisor.run(), supervisor.failures
     print_summary(parameters, monitor, failures, duration)
-    given = (program, scenario, duration, stay or None)
-    print_note_of_idle_run(*given, options="--program, --scenario, --duration or --stay")
+    given = (program, scenario, plc, duration, stay or None)
+    print_note_of_idle_run(*given, options="--program, --scenario, --plc, --duration or --stay")
     return RUN_FAILED if failures or monitor.run_failed or (strict and monitor.refused) else 0
 
 

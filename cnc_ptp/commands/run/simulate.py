@@ -7,6 +7,7 @@ import time
 from collections import defaultdict
 from contextlib import nullcontext
 from dataclasses import dataclass, field
+from types import FrameType
 
 from rich.console import Console
 
@@ -24,11 +25,13 @@ from cnc_ptp.commands.run.progress import RunProgress
 from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import EndRequest
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
+from cnc_ptp.machine.plc_file import read_plc
 from cnc_ptp.machine.run_entries import read_entries
-from cnc_ptp.machine.wiring import build_units
+from cnc_ptp.machine.wiring import build_units, unit_kinds
 from cnc_ptp.nc.block_search import StartPoint
 from cnc_ptp.parameters import MachineParameters, machine_text, read_machine
 from cnc_ptp.plc.plc_unit import error_of
+from cnc_ptp.plc.program.plc_program import PlcFile
 from cnc_ptp.protocol.blocks import (
     AxisBlock,
     ChannelBlock,
@@ -39,7 +42,11 @@ from cnc_ptp.protocol.blocks import (
 )
 from cnc_ptp.protocol.notes import Note, Notes, error_text
 from cnc_ptp.protocol.unit import PLC
+from cnc_ptp.recording.trigger import Condition, TriggeredRecording, make_recording
 from cnc_ptp.recording.writer import Recording
+
+LONG_CYCLE = 1.0
+"""Seconds after which an interrupt breaks off a cycle of a PLC in a file."""
 
 
 @dataclass
@@ -82,13 +89,18 @@ def simulate(
     strict: bool = False,
     dialect: str | None = None,
     begin: StartPoint | None = None,
+    plc: str | None = None,
+    record_when: str | None = None,
 ) -> int:
     """Runs offline; prints a summary. Status 1 when a unit ended in error, with `strict` also for a refused command."""
-    check_recording(record, machine_file=machine, NC_program=program, scenario=scenario)
+    check_recording(record, machine_file=machine, NC_program=program, scenario=scenario, PLC_file=plc)
     parameters = read_machine(machine)
     print_missing_folders(parameters)
     job = read_entries(parameters, program=program, scenario=scenario, dialect=dialect, begin=begin)
-    offline = OfflineMachine(parameters, build_units(parameters, scenario=job, end_when_idle=duration is None))
+    condition = None if record_when is None else Condition(record_when, unit_kinds(parameters))
+    file = None if plc is None else read_plc(plc)
+    units = build_units(parameters, scenario=job, end_when_idle=duration is None, plc_file=file)
+    offline = OfflineMachine(parameters, units)
     cycles = None if duration is None else round(duration * 1e6 / parameters.cycle_time_us)
     result = Result()
     gc.freeze()  # what was loaded stays to the end: nothing to be searched for garbage
@@ -96,10 +108,12 @@ def simulate(
     recording = None
     if record is not None:
         cycle_time_ns = parameters.cycle_time_us * 1000
-        recording = Recording(record, machine_text(machine), 0, cycle_time_ns)
+        recording = make_recording(record, machine_text(machine), 0, cycle_time_ns, condition)
     try:
-        with RunProgress() as progress, recording or nullcontext(), EndRequest() as end:
+        endless = EndlessCycle(file)
+        with RunProgress() as progress, recording or nullcontext(), EndRequest(endless.break_in) as end:
             for outputs in offline.run(cycles=cycles):
+                endless.ticked_at = time.monotonic()
                 result.add(outputs)
                 progress.show_block(outputs)
                 if recording is not None:
@@ -110,8 +124,25 @@ def simulate(
         print_error(error)
         result.failed = True
     print_summary(parameters, result, time.monotonic() - started, duration)
-    print_note_of_idle_run(program, scenario, duration)
+    print_note_of_idle_run(program, scenario, plc, duration)
+    print_note_of_trigger(recording)
     return RUN_FAILED if result.failed or result.interrupted or (strict and result.refused) else 0
+
+
+class EndlessCycle:
+    """Breaks off a cycle of a PLC in a file that does not end, when the user interrupts the run."""
+
+    def __init__(self, file: PlcFile | None) -> None:
+        self._path = None if file is None else file.path
+        self.ticked_at = time.monotonic()
+        """When the last block was computed."""
+
+    def break_in(self, frame: FrameType | None) -> None:
+        """At a signal: raises KeyboardInterrupt if the file has been at work for long."""
+        while frame is not None and frame.f_code.co_filename != self._path:
+            frame = frame.f_back
+        if frame is not None and time.monotonic() - self.ticked_at > LONG_CYCLE:
+            raise KeyboardInterrupt
 
 
 def interrupted(offline: OfflineMachine, outputs: Outputs, result: Result, end: EndRequest) -> bool:
@@ -134,6 +165,13 @@ def write(recording: Recording, outputs: Outputs) -> None:
             recording.event(event)
         for record in output.records:
             recording.command(record)
+
+
+def print_note_of_trigger(recording: Recording | None) -> None:
+    """A recording that has not begun."""
+    if isinstance(recording, TriggeredRecording) and recording.begin is None:
+        text = "note: the condition of --record-when was never true; commands and events alone are recorded"
+        Console(highlight=False, soft_wrap=True).print(text, style="yellow")
 
 
 def print_summary(

@@ -1,0 +1,106 @@
+"""Function blocks that couple an axis or spindle to a master."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from cnc_ptp.plc.plcopen.execute_block import EndlessBlock, ExecuteBlock
+from cnc_ptp.plc.plcopen.faults import CAME_TO_REST, NOT_GRANTED
+from cnc_ptp.plc.plcopen.unit_reference import UnitReference
+from cnc_ptp.protocol.axis_states import AxisStateCode
+from cnc_ptp.protocol.blocks import AxisBlock, SpindleBlock
+
+Master = UnitReference | str
+
+
+class SlaveBlock(EndlessBlock):
+    """A block that makes its unit a slave."""
+
+    def __init__(self, unit: UnitReference) -> None:
+        super().__init__(unit)
+        self._master = ""
+
+    def _couple(self, command: str, master: Master, **arguments: Any) -> None:
+        self._master = master if isinstance(master, str) else master.name
+        self._start(command, master=self._master, **arguments)
+
+    def _while_active(self) -> None:
+        block = self.unit.block
+        follows = isinstance(block, AxisBlock) and block.state[-1] == AxisStateCode.SYNCHRONIZED_MOTION
+        self._reached = follows and isinstance(block, AxisBlock) and block.master == self._master
+
+    def _follow_unit(self) -> None:
+        """The coupling of a spindle is no job: the PLC grants it, and the block of the spindle names its master."""
+        block = self.unit.block
+        if not isinstance(block, SpindleBlock) or block.master_wanted == self._master:
+            return
+        if block.master == self._master:
+            self.active = self._reached = True
+        elif self._reached:
+            self._abort()
+        else:
+            self._fail(NOT_GRANTED, f"{self._where}: {self._master} was not granted as its master")
+
+    def _job_done(self) -> None:
+        """The axis could not follow its master, or its coupling has ended."""
+        self._fail(CAME_TO_REST, f"{self._where}: its coupling to {self._master} has ended without a command")
+
+
+class MC_GearIn(SlaveBlock):
+    """Couples the unit to a master with a ratio: it moves by numerator / denominator times the way of the master."""
+
+    @property
+    def in_gear(self) -> bool:
+        return self._reached
+
+    def __call__(
+        self, execute: bool, master: Master = "", ratio_numerator: float = 1.0, ratio_denominator: float = 1.0
+    ) -> None:
+        if not self._rises(execute):
+            return
+        if self.unit.kind == "spindle":
+            self._couple("couple", master, factor_num=ratio_numerator, factor_den=ratio_denominator)
+        else:
+            factor = ratio_numerator / ratio_denominator if ratio_denominator else ratio_numerator * float("inf")
+            self._couple("couple", master, factor=factor)
+
+
+class MC_CamIn(SlaveBlock):
+    """Couples an axis to a master by a cam table: points [master, slave], master ascending."""
+
+    @property
+    def in_sync(self) -> bool:
+        return self._reached
+
+    def __call__(
+        self,
+        execute: bool,
+        master: Master = "",
+        cam_table: Sequence[Sequence[float]] = (),
+        periodic: bool = True,
+        master_offset: float | None = None,
+        slave_offset: float | None = None,
+        master_scaling: float | None = None,
+        slave_scaling: float | None = None,
+    ) -> None:
+        if not self._rises(execute):
+            return
+        points = [[float(value) for value in point] for point in cam_table]
+        shift = {"master_offset": master_offset, "slave_offset": slave_offset}
+        scaling = {"master_scaling": master_scaling, "slave_scaling": slave_scaling}
+        self._couple("couple_cam", master, table=points, cyclic=periodic, **shift, **scaling)
+
+
+class MC_GearOut(ExecuteBlock):
+    """Ends the coupling. An axis that moves continues at its velocity until another command."""
+
+    waits_for_job = False
+
+    def __call__(self, execute: bool) -> None:
+        if self._rises(execute):
+            self._start("decouple")
+
+
+class MC_CamOut(MC_GearOut):
+    """Ends the coupling by a cam table, as MC_GearOut."""

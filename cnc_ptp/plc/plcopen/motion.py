@@ -1,0 +1,184 @@
+"""Function blocks that move a unit: positionings, velocity, stop, homing.
+
+Positions in mm (°), velocities in mm/s (°/s), of spindles in rpm. Dynamics that are None come from the axis parameters.
+"""
+
+from __future__ import annotations
+
+from typing import Any, TypedDict, Unpack
+
+from cnc_ptp.axis.faults import IN_BRAKE_PHASE
+from cnc_ptp.plc.plcopen.buffer_mode import ABORTING
+from cnc_ptp.plc.plcopen.execute_block import EndlessBlock, ExecuteBlock
+from cnc_ptp.plc.plcopen.unit_reference import UnitReference
+from cnc_ptp.protocol.blocks import AxisBlock, SpindleBlock
+
+EXACT = 1e-9
+"""Part of a velocity: rounding of a setpoint."""
+
+
+class Ramps(TypedDict, total=False):
+    """Inputs of a motion; what is left out, or None, comes from the axis parameters."""
+
+    acceleration: float | None
+    deceleration: float | None
+    jerk: float | None
+    buffer_mode: str
+    """aborting without it."""
+
+
+class Inputs(Ramps, total=False):
+    """Inputs of a positioning."""
+
+    velocity: float | None
+
+
+class MotionBlock(ExecuteBlock):
+    """A motion with a buffer mode."""
+
+    def _move(self, command: str, *, buffer_mode: str = ABORTING, **arguments: Any) -> None:
+        self._start(command, buffer_mode, **arguments)
+
+
+class MC_MoveAbsolute(MotionBlock):
+    """Positioning to `position`."""
+
+    def __call__(self, execute: bool, position: float = 0.0, **inputs: Unpack[Inputs]) -> None:
+        if self._rises(execute):
+            self._move("move_absolute", target=position, **inputs)
+
+
+class MC_MoveRelative(MotionBlock):
+    """Positioning over `distance` from the set position at which it begins."""
+
+    def __call__(self, execute: bool, distance: float = 0.0, **inputs: Unpack[Inputs]) -> None:
+        if self._rises(execute):
+            self._move("move_relative", distance=distance, **inputs)
+
+
+class MC_MoveAdditive(MotionBlock):
+    """Positioning over `distance` from the target of the motion before."""
+
+    def __call__(self, execute: bool, distance: float = 0.0, **inputs: Unpack[Inputs]) -> None:
+        if self._rises(execute):
+            self._move("move_additive", distance=distance, **inputs)
+
+
+class MC_MoveModulo(MotionBlock):
+    """Positioning of a modulo axis; the sign of `position` is the direction, its magnitude has whole turns in it."""
+
+    def __call__(self, execute: bool, position: float = 0.0, **inputs: Unpack[Inputs]) -> None:
+        if self._rises(execute):
+            self._move("move_modulo", position=position, **inputs)
+
+
+class MC_MoveSuperimposed(ExecuteBlock):
+    """Adds `distance` to the motion of an axis, at most `velocity_difference` faster; that motion goes on."""
+
+    def __call__(
+        self,
+        execute: bool,
+        distance: float = 0.0,
+        velocity_difference: float | None = None,
+        acceleration: float | None = None,
+        deceleration: float | None = None,
+        jerk: float | None = None,
+    ) -> None:
+        if self._rises(execute):
+            ramps: dict[str, Any] = {"acceleration": acceleration, "deceleration": deceleration, "jerk": jerk}
+            self._start("move_superimposed", distance=distance, velocity_difference=velocity_difference, **ramps)
+
+
+class MC_MoveVelocity(EndlessBlock):
+    """Motion at `velocity` until another command; its sign is the direction. Of a spindle in rpm, + is M03."""
+
+    def __init__(self, unit: UnitReference) -> None:
+        super().__init__(unit)
+        self._velocity = 0.0
+
+    @property
+    def in_velocity(self) -> bool:
+        """The unit moves at the commanded velocity times its override."""
+        return self._reached
+
+    def __call__(self, execute: bool, velocity: float = 0.0, **inputs: Unpack[Ramps]) -> None:
+        if not self._rises(execute):
+            return
+        self._velocity = velocity
+        mode, ramps = inputs.pop("buffer_mode", ABORTING), dict(inputs)
+        if self.unit.kind == "spindle":
+            self._start("start", mode, direction="ccw" if velocity < 0.0 else "cw", speed_rpm=abs(velocity), **ramps)
+        else:
+            self._start("move_velocity", mode, velocity=velocity, **ramps)
+
+    def _while_active(self) -> None:
+        block = self.unit.block
+        if isinstance(block, SpindleBlock):
+            self._reached = block.speed_reached[-1] and block.set_acceleration_deg_s2[-1] == 0.0
+        elif isinstance(block, AxisBlock):
+            wanted = self._velocity * block.override_percent[-1] / 100.0
+            self._reached = abs(block.set_velocity[-1] - wanted) <= EXACT * abs(self._velocity)
+
+
+class MC_Halt(ExecuteBlock):
+    """Stops on the ramp of the motion; another motion may follow at once."""
+
+    def __call__(self, execute: bool) -> None:
+        if self._rises(execute):
+            self._start("stop" if self.unit.kind == "spindle" else "halt")
+
+
+class MC_Stop(ExecuteBlock):
+    """Stops, and holds the unit at its standstill while `execute` is true: no other block moves it then.
+
+    With `deceleration` or `jerk` an axis stops on a ramp of its own, never weaker than that of the motion.
+    """
+
+    moves = False
+
+    def __init__(self, unit: UnitReference) -> None:
+        super().__init__(unit)
+        self._holds = False
+
+    def __call__(self, execute: bool, deceleration: float | None = None, jerk: float | None = None) -> None:
+        if self._rises(execute):
+            own_ramp = deceleration is not None or jerk is not None
+            self._hold(True)
+            self._start("emergency_stop" if own_ramp else "stop", deceleration=deceleration, jerk=jerk)
+        elif not self.execute or self.error:
+            self._hold(False)
+
+    def _hold(self, holds: bool) -> None:
+        self.unit.stops += int(holds) - int(self._holds)
+        self._holds = holds
+
+    def _refused(self, error_id: int, text: str) -> None:
+        """An axis that brakes naturally takes no stronger ramp, but a stop."""
+        if error_id == IN_BRAKE_PHASE:
+            self._start("stop")
+        else:
+            super()._refused(error_id, text)
+
+
+class MC_Home(ExecuteBlock):
+    """Homing, as the parameters of the unit say."""
+
+    def __call__(self, execute: bool) -> None:
+        if self._rises(execute):
+            self._start("home")
+
+
+class MC_OrientSpindle(MotionBlock):
+    """M19: positioning of a spindle to `position` within a turn, at `velocity` in rpm, P-AXIS-00209 without it."""
+
+    def __call__(
+        self,
+        execute: bool,
+        position: float = 0.0,
+        velocity: float | None = None,
+        direction: str | None = None,
+        buffer_mode: str = ABORTING,
+    ) -> None:
+        if self._rises(execute):
+            arguments = {"position_deg": position, "speed_rpm": velocity, "direction": direction}
+            self._move("orient", buffer_mode=buffer_mode, **arguments)
