@@ -11,7 +11,7 @@ import pytest
 from axis_motion_support import ramp_way
 from machine_support import CYCLE_TIME, MachineBench, UnitBench, axis_bench, axis_parameters
 
-from cnc_ptp.axis.reference_marks import ReferenceMarks
+from cnc_ptp.control.drives.reference_marks import ReferenceMarks
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import StatusBit
 
