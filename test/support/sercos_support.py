@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Mapping
 from dataclasses import replace
 from math import sqrt
 from typing import Any
@@ -15,6 +16,8 @@ from cnc_ptp.control.drives.sercos import idns
 from cnc_ptp.control.drives.sercos.service_channel import ServiceChannel
 from cnc_ptp.parameters import AxisParameters, read_machine
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
+from cnc_ptp.protocol.axis_states import StatusBit
+from cnc_ptp.protocol.blocks import CycleBlock, CycleTick, Event
 
 EXAMPLE = read_machine(ROOT / "examples" / "sercos.yaml")
 START, EDGE, MARK = 85.0, -1.0, -4.0
@@ -49,13 +52,47 @@ def sercos_axis(*, fault: str = "NONE", parameter_scaling: bool = False, ideal: 
     return replace(axis, homing=changed, control=control, referenced_at_start=referenced, start_position=start)
 
 
-def sercos_bench(*, count: int = 10, **changes: Any) -> UnitBench:
-    bench = UnitBench(AxisUnit(sercos_axis(**changes), cycle_time=CYCLE_TIME), count=count)
+class SercosBench(UnitBench):
+    """An axis alone that keeps its events of all kinds."""
+
+    def __init__(self, unit: AxisUnit, *, count: int) -> None:
+        super().__init__(unit, count=count)
+        self.all_events: list[Event] = []
+
+    def run(self, cycles: int, inputs: Mapping[str, CycleBlock] | None = None) -> None:
+        end = self.cycle + cycles
+        while self.cycle < end:
+            tick = CycleTick(self.cycle, min(self.count, end - self.cycle))
+            self.blocks.append(self.runner.compute(tick, inputs or {}))
+            events = self.unit.take_events()
+            self.all_events += events
+            self.events += [event for event in events if event.severity]
+
+    @property
+    def encoder(self) -> float:
+        """Where the axis is in the machine."""
+        return float(self.unit._loop.encoder)  # type: ignore[attr-defined]
+
+    @property
+    def referenced(self) -> bool:
+        return not self.last.status_bits[-1] & StatusBit.NOT_REFERENCED
+
+    def read(self, idn: str) -> int | str:
+        record = self.give("read_drive_parameter", idn=idn)
+        assert record.message == f"{idn} = {record.values[idn]}"
+        return record.values[idn]  # type: ignore[return-value]
+
+    def write(self, idn: str, value: int) -> None:
+        assert self.accepted("write_drive_parameter", idn=idn, value=value) == ""
+
+
+def sercos_bench(*, count: int = 10, **changes: Any) -> SercosBench:
+    bench = SercosBench(AxisUnit(sercos_axis(**changes), cycle_time=CYCLE_TIME), count=count)
     bench.run(count)
     return bench
 
 
-def to_rest(bench: UnitBench, cycles: int = 30_000) -> UnitBench:
+def to_rest(bench: SercosBench, cycles: int = 30_000) -> SercosBench:
     """Until the axis neither homes nor stops, and 50 cycles more."""
     for _ in range(cycles // 10):
         bench.run(10)
@@ -65,9 +102,9 @@ def to_rest(bench: UnitBench, cycles: int = 30_000) -> UnitBench:
     return bench
 
 
-def phases(bench: UnitBench) -> list[str]:
-    """What the events of the drive say."""
-    return [text.partition("drive: ")[2] for text in bench.infos if "drive: " in text]  # type: ignore[attr-defined]
+def home(bench: SercosBench, **arguments: Any) -> SercosBench:
+    assert bench.accepted("home", **arguments) == ""
+    return to_rest(bench)
 
 
 class DriveBench:

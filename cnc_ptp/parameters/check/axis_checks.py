@@ -89,7 +89,7 @@ def homing_of_an_axis(parameters: ParameterSet) -> Iterator[Problem]:
 
 
 def homing_by_drive(parameters: ParameterSet) -> Iterator[Problem]:
-    """Only a SERCOS drive homes on its own, if it has a velocity controller, and with a velocity."""
+    """Only a SERCOS drive homes on its own, if it has a velocity controller."""
     kind = int(parameters.number(ids.KENNGR_ANTR_TYP))
     if kind != DriveType.SERCOS:
         text = f"{DRIVE_CONTROLLED} needs a SERCOS drive, P-AXIS-00020 kenngr.antr_typ is {kind}"
@@ -97,7 +97,3 @@ def homing_by_drive(parameters: ParameterSet) -> Iterator[Problem]:
     elif interface(parameters) == "torque":
         text = f"{DRIVE_CONTROLLED} needs a drive that takes velocities or positions, it takes torques"
         yield problem(parameters, errors.CONTRADICTION, ids.HOMING_HOMING_TYPE, (), text)
-    for gear in parameters.used_indexes("getriebe"):
-        if parameters.number(ids.GETRIEBE_VB_REFMAX, gear) == 0:
-            text = f"value 0 is not a homing velocity for P-AXIS-00299 = {DRIVE_CONTROLLED}"
-            yield problem(parameters, errors.CONTRADICTION, ids.GETRIEBE_VB_REFMAX, (gear,), text)
