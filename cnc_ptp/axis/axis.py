@@ -11,6 +11,7 @@ from cnc_ptp.axis.carried import CarriedMotion
 from cnc_ptp.axis.command_checks import MotionChecks
 from cnc_ptp.axis.compensation import Compensation
 from cnc_ptp.axis.coupling import Coupling
+from cnc_ptp.axis.drive_lead import DriveLead
 from cnc_ptp.axis.external import ExternalSetpoints
 from cnc_ptp.axis.faults import (
     FEED_WITHHELD,
@@ -77,6 +78,8 @@ class Axis:
         """To the master; after an error has put the axis on its own ramp it is kept until a reset."""
         self.carried: CarriedMotion | None = None
         """What the coupling adds to the path of a channel; None where it is the basic motion itself."""
+        self.lead = DriveLead()
+        """A drive that homes the axis on its own."""
         self.slaves: set[str] = set()
         self.powered = parameters.powered_at_start
         self.state = S.STANDSTILL if self.powered else S.DISABLED
@@ -121,7 +124,11 @@ class Axis:
         return self.compensation.offset + self.external.zero(cycle)
 
     def moving(self, cycle: int) -> bool:
-        return self.superposition_moves(cycle) or not self.ptp.finished(cycle)
+        return self.superposition_moves(cycle) or not self.rests(cycle)
+
+    def rests(self, cycle: int) -> bool:
+        """Neither its own generator nor its drive moves the axis."""
+        return self.ptp.finished(cycle) and not self.lead.active
 
     def superposition_moves(self, cycle: int) -> bool:
         """Compensation or external setpoints move the axis in addition to its basic motion."""
@@ -183,8 +190,11 @@ class Axis:
     def stop(self, cycle: int, *, locks: bool = True) -> None:
         """Basic motion, compensation and external setpoints come to rest, each on its ramp; `locks` as in the PTP.
 
-        A target that the external setpoints were to reach no longer counts.
+        A target that the external setpoints were to reach no longer counts. A drive that leads stops on its own ramp.
         """
+        if self.lead.active:
+            self.lead.cancel()
+            return
         self.setpoint(cycle)  # brings compensation and external setpoints up to this cycle
         self.target_window.target = None
         self.ptp.stop(cycle, self.own_limits, locks=locks)
@@ -216,7 +226,15 @@ class Axis:
     @property
     def feed_withheld(self) -> bool:
         """A motion, or the path of the channel that moves the axis, waits for the feed release of its direction."""
-        return self.ptp.withheld or (self.on_path and self.path_direction != 0.0)
+        led = self.lead.active and self.ptp.restricted
+        return led or self.ptp.withheld or (self.on_path and self.path_direction != 0.0)
+
+    def begin_homing(self, cycle: int) -> None:
+        """From Standstill to Homing, with nothing superimposed."""
+        self.absorb(cycle)
+        self.take(T.HOME)
+        self.has_been_stopped = False
+        self.target_window.watch()
 
     # couplings
 
@@ -276,9 +294,9 @@ class Axis:
     def basic_motion(self, cycle: int, count: int) -> Setpoints:
         """The basic motion of `count` cycles, fewer (but one at least) when something comes due among them.
 
-        One cycle at a time while a homing looks for its signals.
+        One cycle at a time while a homing looks for its signals, or the drive leads.
         """
-        if self.state == S.HOMING:
+        if self.state == S.HOMING or self.lead.active:
             return self.ptp.setpoints(cycle, 1)
         due = self.override_filter.due_cycle
         return self.ptp.setpoints(cycle, count if due is None else max(1, min(count, due - cycle)))
@@ -292,6 +310,8 @@ class Axis:
 
     def advance_state(self, cycle: int) -> None:
         """Ends a motion that has finished at `cycle`; a request that waited for the end of a stop has started."""
+        if self.lead.active:
+            return
         if self.ptp.job is not None and self.state == S.STOPPING:
             self.take(T.NEW_TARGET)
             self.has_been_stopped = False
@@ -352,6 +372,8 @@ class Axis:
 
     def motion_bits(self, setpoint: MotionState, actual_position: float) -> int:
         position, velocity, acceleration, _ = setpoint
+        if self.lead.active:
+            return 0
         if velocity != 0.0:
             return CONSTANT_VELOCITY if acceleration == 0.0 else 0
         if self.ptp.job is None and self.target_window.reached(position, actual_position):
@@ -384,10 +406,15 @@ class Axis:
             self.leave_master(cycle)
         self.absorb(cycle)
         self._note_propagation(cycle, error_id)
-        self.ptp.stop(cycle, self.own_limits, at_least=True)
+        led = self.lead.active
+        if led:
+            self.lead.cancel()
+        else:
+            self.ptp.stop(cycle, self.own_limits, at_least=True)
         self.target_window.forget()
         self.take(T.FAULT)
-        self._report_error(cycle, error_id, f"axis {self.name}: {reason}; the axis stops on its own ramp (ErrorStop)")
+        ramp = "the drive stops on its ramp" if led else "the axis stops on its own ramp"
+        self._report_error(cycle, error_id, f"axis {self.name}: {reason}; {ramp} (ErrorStop)")
 
     def pair_in(self, error_id: int) -> Coupling | None:
         """The coupling on which the slave of a gantry pair stays in this error."""

@@ -11,6 +11,9 @@ from cnc_ptp.axis.axis_sources import MasterSource, PathSource
 from cnc_ptp.axis.compensation_commands import CompensationCommands
 from cnc_ptp.axis.coupling_commands import CouplingCommands
 from cnc_ptp.axis.decoupling_commands import DecouplingCommands
+from cnc_ptp.axis.drive_homing import DriveHoming
+from cnc_ptp.axis.drive_lead import DriveLead
+from cnc_ptp.axis.drive_parameter_commands import DriveParameterCommands
 from cnc_ptp.axis.external_commands import ExternalCommands
 from cnc_ptp.axis.feed_release_commands import FeedReleaseCommands
 from cnc_ptp.axis.homing import Homing
@@ -71,7 +74,9 @@ class AxisUnit(Unit):
         )
         if not parameters.referenced_at_start:
             self._loop.count_from(parameters.start_position)
+        self._axis.lead = DriveLead(self._loop.drive.service)
         self._homing = Homing(self._axis, self._loop)
+        self._drive_homing = DriveHoming(self._axis, self._loop, cycle_time=cycle_time, report=self._report_phase)
         self._probe = Probe(parameters.probe)
         begin, length = self._axis.modulo_range
         self._make_block = partial(
@@ -88,7 +93,8 @@ class AxisUnit(Unit):
             OverrideCommands(self._axis),
             StopCommands(self._axis),
             JogCommands(self._axis),
-            HomingCommands(self._axis, self._homing),
+            HomingCommands(self._axis, self._homing, self._drive_homing),
+            DriveParameterCommands(self._axis, self._drive_homing),
             CompensationCommands(self._axis),
             ExternalCommands(self._axis),
             CouplingCommands(self._axis, axes=known, cycle_time=cycle_time),
@@ -104,6 +110,9 @@ class AxisUnit(Unit):
     def _report_warning(self, cycle: int, error_id: int, text: str) -> None:
         self.event(cycle, Severity.WARNING, error_id, text)
 
+    def _report_phase(self, cycle: int, error_id: int, text: str) -> None:
+        self.event(cycle, Severity.INFO, error_id, text)
+
     @property
     def master(self) -> str | None:
         """See Unit."""
@@ -115,8 +124,10 @@ class AxisUnit(Unit):
         return self._last_block is not None and self._last_block.state[-1] == S.SYNCHRONIZED_MOTION
 
     def waits_for(self) -> str:
-        """See Unit: only a command ends the motion of a slave that was decoupled while it moved."""
+        """See Unit: only a command ends the motion of a slave that was decoupled while it moved, or a PLC's S-0-0148."""
         block = self._last_block
+        if self._drive_homing.waits_for_plc:
+            return f"axis {self.name} waits for S-0-0148 = 0"
         if block is None or block.state[-1] != S.CONTINUOUS_MOTION:
             return ""
         endless = block.status_bits[-1] & StatusBit.HAS_JOB and block.set_velocity[-1] != 0.0
@@ -245,7 +256,9 @@ class AxisUnit(Unit):
         """Adds one cycle, in which anything can happen."""
         axis, loop = self._axis, self._loop
         setpoint = axis.superimposed(cycle, base)
-        if axis.state == S.HOMING:
+        if axis.lead.active:
+            setpoint = self._drive_homing.watch(cycle)
+        elif axis.state == S.HOMING:
             setpoint = self._homing.watch(cycle, setpoint)
         actual_position = loop.position
         if axis.state in MOVING_ALONE:
@@ -254,7 +267,7 @@ class AxisUnit(Unit):
         setpoint = self._monitoring.watch(cycle, setpoint)
         self._master.gantry.watch(cycle, setpoint, actual_position)
         self._monitoring.watch_target(cycle, setpoint, actual_position)
-        closed = axis.powered or axis.moving(cycle)
+        closed = not axis.lead.active and (axis.powered or axis.moving(cycle))
         if closed and axis.error_id == 0 and loop.too_far(setpoint):
             axis.fault(cycle, FOLLOWING_ERROR, loop.why_too_far(setpoint, axis.unit), setpoint)
         loop.cycle(setpoint, closed, control)

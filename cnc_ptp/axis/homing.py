@@ -17,7 +17,7 @@ from enum import Enum, auto
 from cnc_ptp.axis import transitions as T
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.faults import HOMING_SIGNAL_MISSING
-from cnc_ptp.axis.reference_marks import ReferenceMarks
+from cnc_ptp.control.drives.reference_marks import ReferenceMarks
 from cnc_ptp.control.control_loop import ControlLoop
 from cnc_ptp.motion.setpoints import MotionState
 
@@ -43,6 +43,7 @@ class Homing:
         self._marks = ReferenceMarks(self._parameters)
         self._phase = Phase.END
         self._was_on_cam = False
+        self._position = self._parameters.reference_position
         self._armed_at: float | None = None
         """Where the encoder was when it last looked for the zero pulse; None: it does not look yet."""
 
@@ -50,9 +51,10 @@ class Homing:
     def on_cam(self) -> bool:
         return self._marks.on_cam(self._loop.encoder)
 
-    def begin(self, cycle: int) -> None:
-        """Starts; what was known of the reference point is lost."""
+    def begin(self, cycle: int, position: float) -> None:
+        """Starts; the reference point will have `position`, mm (deg). What was known of it is lost."""
         self._axis.checks.referenced = False
+        self._position = position
         parameters = self._parameters
         if parameters.without_cam or parameters.without_reversing:
             self._search(cycle, Phase.TO_REFERENCE)
@@ -115,9 +117,9 @@ class Homing:
         return self._marks.pulse(before, encoder)
 
     def _take_reference(self, cycle: int, setpoint: MotionState, reference: float) -> MotionState:
-        """From now on the place of the reference has the position P-AXIS-00152; the axis stops."""
+        """From now on the place of the reference has its position; the axis stops."""
         axis, loop = self._axis, self._loop
-        distance = self._parameters.reference_position - (reference + loop.offset)
+        distance = self._position - (reference + loop.offset)
         loop.shift(distance)
         position, velocity, acceleration, jerk = setpoint
         position += distance

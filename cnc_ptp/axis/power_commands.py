@@ -66,7 +66,7 @@ class PowerCommands:
             axis.external.disable(cycle)
         if axis.state != S.ERROR_STOP:
             return
-        if not axis.ptp.finished(cycle):
+        if not axis.rests(cycle):
             axis.refuse("reset", STILL_MOVING, "the axis still moves on its error ramp; wait for standstill")
         axis.error_id = 0
         axis.ptp.finish()

@@ -76,12 +76,24 @@ class StopCommands:
             return without_effect(axis.name, command, axis.state)
         if self._brakes_naturally(cycle):
             axis.refuse(command, IN_BRAKE_PHASE, "the axis is in its brake phase")
+        if axis.lead.active:
+            return self._stop_drive(cycle, deceleration, jerk)
         ramp, warning = self._emergency_ramp(command, deceleration, jerk)
         cancelled = self._cancel_target(command)
         axis.absorb(cycle)
         axis.ptp.stop(cycle, ramp, at_least=True)
         self._stopped(locks=True)
         return "; ".join(filter(None, (warning, cancelled))) or None
+
+    def _stop_drive(self, cycle: int, deceleration: object, jerk: object) -> str | None:
+        """A drive that homes the axis has its own ramp."""
+        axis = self._axis
+        axis.stop(cycle)
+        self._stopped(locks=True)
+        if deceleration is None and jerk is None:
+            return None
+        ramp = "the drive stops on its own ramp (S-0-0042, S-0-0349); deceleration and jerk have no effect"
+        return warning_text(EMERGENCY_CORRECTED, f"axis {axis.name}: emergency_stop: {ramp}")
 
     def _brakes_naturally(self, cycle: int) -> bool:
         """In the natural brake phase, with no superimposed motion and no external setpoints enabled."""

@@ -159,6 +159,11 @@ class ControlLoop:
         self.offset += distance
         self._history.shift(distance)
 
+    def take_offset(self, offset: float) -> None:
+        """From now on the axis is at `offset` where the encoder is at 0."""
+        distance, self.offset = offset - self.offset, offset
+        self._history.shift(distance)
+
     def select_feedforward(self, on: bool, weight_percent: float) -> None:
         """G135 or G137 with the weight of G136: immediately at a standstill, softly in motion.
 

@@ -54,7 +54,8 @@ class UnitRunner:
         for sender, command in commands_for(self.unit.name, inputs):
             record = self.unit.command(command, tick.first_cycle)
             if sender == PLC:
-                self._answers.append(CommandAnswer(command.id, record.error_id, record.job, record.message))
+                answer = (command.id, record.error_id, record.job, record.message, record.values_json)
+                self._answers.append(CommandAnswer(*answer))
         self._watch_life_sign(tick, inputs)
 
     def compute(self, tick: CycleTick, inputs: Mapping[str, CycleBlock]) -> CycleBlock:

@@ -66,7 +66,7 @@ SERVICES: dict[str, dict[str, Any]] = {
         "set_override_type": srv.SetOverrideType,
         "stop": srv.Execute,
         "halt": srv.Execute,
-        "home": srv.Execute,
+        "home": srv.HomeAxis,
         "emergency_stop": srv.EmergencyStop,
         "new_target": srv.NewTarget,
         "new_velocity_and_target": srv.NewVelocityAndTarget,
@@ -79,6 +79,8 @@ SERVICES: dict[str, dict[str, Any]] = {
         "decouple": srv.Decouple,
         "set_feedforward": srv.SetFeedforward,
         "set_friction_compensation": srv.SetSwitch,
+        "read_drive_parameter": srv.ReadDriveParameter,
+        "write_drive_parameter": srv.WriteDriveParameter,
     },
     "spindle": {
         "power": srv.SetSwitch,

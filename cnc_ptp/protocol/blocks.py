@@ -77,7 +77,7 @@ class CommandRecord:
     message: str
     id: int = 0
     values: Mapping[str, Value] = field(default_factory=dict, compare=False)
-    """Values of the refusal's text, in the unit that has refused; messages do not hold them."""
+    """Values of the refusal's text, or what the command was to find out, in the unit; messages do not hold them."""
     job: int = field(default=0, compare=False)
     """Number of the job that it has begun (protocol/jobs.py), 0 if none; messages do not hold it."""
 
@@ -85,6 +85,17 @@ class CommandRecord:
     def arguments_json(self) -> str:
         """The arguments as JSON."""
         return self.arguments if isinstance(self.arguments, str) else json_of(self.arguments)
+
+    @property
+    def values_json(self) -> str:
+        """The values as JSON; empty without any."""
+        return json_of(self.values) if self.values else ""
+
+
+def read_values(values_json: str) -> dict[str, Value]:
+    """Of `CommandRecord.values_json`."""
+    values: dict[str, Value] = json.loads(values_json) if values_json else {}
+    return values
 
 
 class EventValue(NamedTuple):
@@ -158,6 +169,12 @@ class CommandAnswer(NamedTuple):
     error_id: int = 0
     job: int = 0
     message: str = ""
+    values_json: str = ""
+
+    @property
+    def values(self) -> dict[str, Value]:
+        """What the command was to find out, or the values of a refusal, by name."""
+        return read_values(self.values_json)
 
 
 class JobEvent(NamedTuple):

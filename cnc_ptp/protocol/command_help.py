@@ -27,7 +27,7 @@ COMMAND_TEXTS: Mapping[str, Mapping[str, str]] = {
         "stop": "stops on the ramp; new targets wait until the axis is at a standstill",
         "halt": "stops on the ramp; a new target acts immediately",
         "jog": "moves at a velocity until the next one; 0 ends the jog",
-        "home": "homing (G74): reference cam, zero pulse",
+        "home": "homing (G74): reference cam, zero pulse; by the drive with P-AXIS-00299 = DRIVE_CONTROLLED",
         "emergency_stop": "stops on a ramp of its own, never weaker than that of the start",
         "new_target": "new target on the fly",
         "new_velocity_and_target": "new target immediately, new velocity from a position on",
@@ -49,6 +49,8 @@ COMMAND_TEXTS: Mapping[str, Mapping[str, str]] = {
         "set_feedforward": "switches and weights feedforward",
         "reset_feedforward": "feedforward off, weight 100 %",
         "set_friction_compensation": "switches friction compensation",
+        "read_drive_parameter": "reads a parameter of a SERCOS drive; the answer holds it",
+        "write_drive_parameter": "writes a parameter of a SERCOS drive; S-0-0148 = 3 lets the drive home the axis",
     },
     "spindle": {
         "power": "enable",
@@ -155,11 +157,14 @@ ARGUMENT_TEXTS: Mapping[str, ArgumentText] = {
     "id": ArgumentText("", "number of the request"),
     "name": ArgumentText("", "of the input"),
     "parameter": ArgumentText("", "P-AXIS-00236 or P-MACH-00014"),
+    "idn": ArgumentText("", "`S-0-` and four digits"),
 }
 """By name; those that differ for single commands follow below."""
 
 SPECIAL_TEXTS: Mapping[tuple[str, str, str], ArgumentText] = {
     ("axis", "new_velocity_and_target", "velocity"): ArgumentText("mm/s, °/s", "from the activation position on"),
+    ("axis", "home", "position"): ArgumentText("mm, °", "position of the reference point", "P-AXIS-00152"),
+    ("axis", "write_drive_parameter", "value"): ArgumentText("", "in digits of the drive"),
     ("axis", "jog", "velocity"): ArgumentText("mm/s, °/s", "sign = direction"),
     ("axis", "emergency_stop", "deceleration"): ArgumentText("mm/s², °/s²", "of the stop", "that of the start"),
     ("axis", "emergency_stop", "jerk"): ArgumentText("mm/s³, °/s³", "of the stop", "that of the start"),

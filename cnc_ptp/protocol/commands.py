@@ -74,7 +74,7 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "stop": {},
         "halt": {},
         "jog": {"velocity": NUMBER},
-        "home": {},
+        "home": {"position": OPTIONAL_NUMBER},
         "set_homing_override": {"percent": NUMBER},
         "emergency_stop": dict.fromkeys(("deceleration", "jerk"), LENIENT_NUMBER),
         "new_target": {"target": NUMBER},
@@ -118,6 +118,8 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "set_feedforward": FEEDFORWARD,
         "reset_feedforward": {},
         "set_friction_compensation": {"enabled": SWITCH},
+        "read_drive_parameter": {"idn": TEXT},
+        "write_drive_parameter": {"idn": TEXT, "value": INTEGER},
         "lead": {"slave": TEXT, "enabled": SWITCH},
         "group_error": {"source": TEXT, "error": INTEGER},
         "upstream_lost": SOURCE,
@@ -207,6 +209,8 @@ INTERNAL = frozenset(
     }
 )
 """Commands that only watchdogs, harnesses and other units give; a scenario may not."""
+READING = frozenset({"read_drive_parameter"})
+"""Commands whose message is what was asked for, and no warning."""
 OF_PLC = frozenset({"above", "master_stands", "master_lost"})
 """Arguments of couplings that the PLC fills in; only a refusal can come of them, so that they are not recorded."""
 OF_CHANNELS = frozenset({"own", "homes", "owner"})

@@ -9,6 +9,7 @@ from typing import Any
 from cnc_ptp.errors import read_warning, warning_text
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
 from cnc_ptp.protocol.blocks import Severity
+from cnc_ptp.protocol.commands import READING
 
 PROGRAM_MESSAGE = 22028
 """Event of #MSG."""
@@ -44,7 +45,7 @@ class Note:
         """`record`: a CommandRecord or its message; None for a command that was carried out without a warning."""
         if not record.accepted:
             return cls(record.error_id, record.message, refused=True)
-        if not record.message:
+        if not record.message or record.command in READING:
             return None
         number, text = read_warning(record.message)
         idle = record.command == "stop" and text in {without_effect(record.target, "stop", s) for s in AxisStateCode}

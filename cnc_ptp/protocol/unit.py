@@ -4,14 +4,23 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Iterable, Mapping
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
-from cnc_ptp.errors import CncError
+from cnc_ptp.errors import CncError, Value
 from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Event, EventValue, Severity, json_of
 from cnc_ptp.protocol.commands import OF_PLC, check_command, current_names, with_floats
 from cnc_ptp.protocol.jobs import JOBS, Jobs
 
-Handler = Callable[..., str | None]
+
+
+class Answer(NamedTuple):
+    """What a command was to find out, as text and by name."""
+
+    text: str
+    values: Mapping[str, Value]
+
+
+Handler = Callable[..., str | Answer | None]
 
 PLC = "plc"
 """Name of the PLC, as a unit and as the source of commands."""
@@ -23,7 +32,7 @@ class Unit(ABC):
     """A channel, axis, spindle or the PLC: changed by commands only, advanced by `step` block by block.
 
     A handler `do_<command>(cycle, **arguments)` validates first and raises CncError to refuse; a text that it returns
-    is a warning that goes into the record. Nothing here knows processes, topics or clocks.
+    is a warning that goes into the record, an Answer what it was to find out. Nothing here knows processes, topics or clocks.
     """
 
     kind: ClassVar[str]
@@ -69,13 +78,14 @@ class Unit(ABC):
             error_id=refusal.number if refusal else 0,
             message=refusal.full_message if refusal else self._warning,
             id=command.id,
-            values=refusal.values if refusal else {},
+            values=refusal.values if refusal else self._values,
             job=job,
         )
         self.records.append(record)
         return record
 
     _warning = ""
+    _values: Mapping[str, Value] = {}  # noqa: RUF012
 
     def begin_job(self, command: Command, cycle: int) -> int:
         """A command that is a job was carried out: the number of the job, 0 if there was nothing to do."""
@@ -86,10 +96,14 @@ class Unit(ABC):
         self.jobs.watch(block)
 
     def _dispatch(self, command: str, arguments: Mapping[str, Any], cycle: int) -> None:
-        self._warning = ""
+        self._warning, self._values = "", {}
         arguments = current_names(self.kind, command, arguments)
         check_command(self.kind, self.name, command, arguments, self.sources)
-        self._warning = self.handler(command)(cycle, **with_floats(self.kind, command, arguments)) or ""
+        answer = self.handler(command)(cycle, **with_floats(self.kind, command, arguments))
+        if isinstance(answer, Answer):
+            self._warning, self._values = answer
+        else:
+            self._warning = answer or ""
         if command == "upstream_lost":
             self.lost.add(arguments["source"])
 

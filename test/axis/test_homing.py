@@ -11,9 +11,10 @@ import pytest
 from axis_motion_support import ramp_way
 from machine_support import CYCLE_TIME, MachineBench, UnitBench, axis_bench, axis_parameters
 
-from cnc_ptp.axis.reference_marks import ReferenceMarks
+from cnc_ptp.control.drives.reference_marks import ReferenceMarks
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import StatusBit
+from cnc_ptp.protocol.jobs import JobStatus
 
 CAM, PULSE = -40.0, -43.0
 HOMING = {"fast": 100.0, "slow": 10.0, "cam_position": CAM, "to_zero_pulse": 3.0, "reference_position": PULSE}
@@ -206,6 +207,37 @@ def test_zero_pulses_by_counting() -> None:
         found = marks.pulse(before, now)
         nearest = min(passed, key=lambda p: abs(p - before), default=None)
         assert found == (None if nearest is None else pytest.approx(nearest, abs=1e-9))
+
+
+def test_the_reference_point_gets_the_position_of_the_command() -> None:
+    made = bench(at=100.0)
+    assert made.accepted("home", position=150.0) == ""
+    to_rest(made)
+    assert made.last.set_position[-1] == pytest.approx(machine_position(made) + 150.0 - PULSE, abs=1e-9)
+    home(made)  # without it, the reference point has P-AXIS-00152 again
+    assert made.last.set_position[-1] == pytest.approx(machine_position(made), abs=1e-9)
+
+
+def test_its_job_is_done_when_it_is_referenced_and_at_a_standstill() -> None:
+    made = home(bench(at=100.0))
+    begun, done = [event for block in made.blocks for event in block.job_events]
+    assert (begun.status, done.status, done.error_id) == (JobStatus.ACTIVE, JobStatus.DONE, 0)
+    assert made.column("set_velocity")[done.cycle] == made.column("set_acceleration")[done.cycle] == 0.0
+    assert not made.column("status_bits")[done.cycle] & StatusBit.NOT_REFERENCED
+    assert made.column("state")[done.cycle - 1] == S.HOMING
+
+
+def test_its_job_ends_with_a_stop_or_a_fault() -> None:
+    made = bench(at=100.0)
+    made.accepted("home")
+    made.run(500)
+    made.accepted("stop")
+    to_rest(made)
+    told = [(event.job, event.status) for block in made.blocks for event in block.job_events]
+    assert told == [(1, JobStatus.ACTIVE), (1, JobStatus.ABORTED), (2, JobStatus.ACTIVE), (2, JobStatus.DONE)]
+    lost = home(bench(cam_position=-900.0), 100_000)
+    events = [event for block in lost.blocks for event in block.job_events]
+    assert [(event.status, event.error_id) for event in events] == [(JobStatus.ACTIVE, 0), (JobStatus.FAILED, 70394)]
 
 
 # ---------------------------------------------------------------- soft limits

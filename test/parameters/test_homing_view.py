@@ -34,6 +34,23 @@ def test_range_without_a_parameter() -> None:
     assert axis(table).homing.range == 720.0
 
 
+def test_a_sercos_drive() -> None:
+    """What is not given for the drive is that of its axis."""
+    drive = "kenngr: {antr_typ: 2, homing: {homing_type: DRIVE_CONTROLLED}}, homing_timeout_ms: 2500, "
+    gear = "getriebe: {'0': {window: 200, slope_profil: {a_beschl: 800, tr_beschl_zu: 40000}}}"
+    view = axis(drive + gear + ", simulation: {referenced_at_start: 0}")
+    sercos = view.control.sercos
+    assert sercos is not None and sercos.homing is view.homing and view.homing.timeout == 2.5
+    assert (sercos.acceleration, sercos.jerk, sercos.position_window) == (800.0, 20_000.0, 0.02)
+    assert (sercos.rotary, sercos.referenced, sercos.parameter_scaling, sercos.fault) == (False, False, False, "NONE")
+    own = "simulation: {sercos: {homing_acceleration: 300, homing_jerk: 7000, velocity_scaling: PARAMETER, "
+    sercos = axis(f"{drive}{gear}, {own}homing_fault: NO_MARKER}}}}").control.sercos
+    assert sercos is not None
+    assert (sercos.acceleration, sercos.jerk, sercos.parameter_scaling) == (300.0, 7000.0, True)
+    assert (sercos.fault, sercos.referenced) == ("NO_MARKER", True)
+    assert axis("kenngr: {antr_typ: 4}").control.sercos is None
+
+
 def test_an_axis_that_is_not_referenced_counts_from_0() -> None:
     view = axis("simulation: {start_position: 85, referenced_at_start: 0}")
     assert (view.start_position, view.control.plant.start_position) == (0.0, 85.0)
@@ -56,6 +73,17 @@ def test_an_axis_that_is_not_referenced_counts_from_0() -> None:
             "kenngr: {homing: {homing_type: IGNORE_ABS_POS}}, simulation: {referenced_at_start: 0}",
             "P-AXIS-00299 kenngr.homing.homing_type of /x: IGNORE_ABS_POS needs an axis that is referenced at start, "
             "P-SIM-00005 is 0",
+        ),
+        (
+            "kenngr: {antr_typ: 4, homing: {homing_type: DRIVE_CONTROLLED}}",
+            "P-AXIS-00299 kenngr.homing.homing_type of /x: DRIVE_CONTROLLED needs a SERCOS drive, P-AXIS-00020 "
+            "kenngr.antr_typ is 4",
+        ),
+        (
+            "kenngr: {antr_typ: 2, homing: {homing_type: DRIVE_CONTROLLED}}, getriebe: {'0': {load: 1}}, "
+            "antr: {telegram: {commands: [S-0-0080]}}",
+            "P-AXIS-00299 kenngr.homing.homing_type of /x: DRIVE_CONTROLLED needs a drive that takes velocities or "
+            "positions, it takes torques",
         ),
     ],
 )

@@ -121,6 +121,7 @@ def test_machine_of_defaults() -> None:
             fast=83.333,
             slow=16.666,
             range=40_000.0,
+            timeout=120.0,
             cam_position=0.0,
             cam_length=0.0,
             to_zero_pulse=0.001,

@@ -14,6 +14,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import EndRequest
 from cnc_ptp.nodes.client.latest_blocks import GONE_TEXT
 from cnc_ptp.nodes.client.machine_client import NO_ANSWER, MachineClient, arguments_of, connected
+from cnc_ptp.protocol.commands import READING
 
 BEGINNINGS = ("move_absolute", "move_relative", "move_modulo", "new_target", "new_velocity_and_target", "start", "mdi")
 """Commands for which a stop before the end is a failure."""
@@ -37,7 +38,9 @@ def do(unit: str, command: str, words: Sequence[str], wait: bool) -> int:
             return RUN_FAILED
         console = Console(highlight=False, soft_wrap=True)
         console.print(f"{unit}: {command} accepted, acts at cycle {answer.cycle}", markup=False)
-        if answer.message:
+        if command in READING:
+            console.print(answer.message, markup=False)
+        elif answer.message:
             console.print(f"warning: {answer.message}", style="yellow", markup=False)
         return 0 if waiting is None else waiting.until_settled(answer.cycle)
 

@@ -20,7 +20,7 @@ class PositionCommandedDrive(Drive):
 
     def __init__(self, drive: Drive, *, kv: float) -> None:
         """`kv` in 1/s (S-0-0104, P-SIM-00019); `drive` takes velocities."""
-        super().__init__(has_torque=drive.has_torque)
+        super().__init__(has_torque=drive.has_torque, service=drive.service)
         self._drive, self._kv = drive, kv
         self._take_over()
 
@@ -45,7 +45,7 @@ class LagCommandedDrive(Drive):
 
     def __init__(self, drive: Drive, *, kv: float) -> None:
         """`kv` in 1/s; `drive` takes velocities."""
-        super().__init__(has_torque=drive.has_torque)
+        super().__init__(has_torque=drive.has_torque, service=drive.service)
         self._drive, self._kv = drive, kv
         self._take_over()
 
@@ -70,7 +70,7 @@ class DelayedDrive(Drive):
 
     def __init__(self, drive: Drive, *, cycles: int, rest: float) -> None:
         """`cycles` >= 1; `rest` is the command of the drive until the first one has arrived."""
-        super().__init__(has_torque=drive.has_torque)
+        super().__init__(has_torque=drive.has_torque, service=drive.service)
         self._drive = drive
         self._commands = deque([(rest, 0.0, 0.0)] * cycles)
         self._take_over()

@@ -37,7 +37,7 @@ class TelegramDrive(Drive):
 
     def __init__(self, control: ControlParameters, drive: Drive, *, cycle_time: float) -> None:
         """`drive` takes the commands of `control.drive.interface` in kernel units; `cycle_time` in s."""
-        super().__init__()
+        super().__init__(service=drive.service)
         self._drive = drive
         self._cycle_time = cycle_time
         self._interface = control.drive.interface

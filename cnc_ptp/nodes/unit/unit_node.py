@@ -293,6 +293,8 @@ class UnitNode(PollingNode):
             record = self.command(asked)
         response.accepted, response.error_id = record.accepted, record.error_id
         response.message, response.cycle, response.job = record.message, record.cycle, record.job
+        if hasattr(response, "values_json"):
+            response.values_json = record.values_json
         self._compute_ready_blocks()  # an axis that is decoupled now no longer waits for its master
         return response
 

@@ -10,7 +10,8 @@ from cnc_ptp.parameters.read.messages import problem
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.view.axis_view import SOFT_LIMITS, is_modulo
 from cnc_ptp.parameters.view.encoder import uses_feed_constant
-from cnc_ptp.parameters.view.homing_view import IGNORE_ABSOLUTE
+from cnc_ptp.parameters.view.homing_view import DRIVE_CONTROLLED, IGNORE_ABSOLUTE
+from cnc_ptp.parameters.view.telegram import DriveType, interface
 
 
 def emergency_ramp(parameters: ParameterSet) -> Iterator[Problem]:
@@ -82,4 +83,17 @@ def homing_of_an_axis(parameters: ParameterSet) -> Iterator[Problem]:
     absolute = parameters.number(ids.SIMULATION_REFERENCED_AT_START)
     if parameters.text(ids.HOMING_HOMING_TYPE) == IGNORE_ABSOLUTE and not absolute:
         text = f"{IGNORE_ABSOLUTE} needs an axis that is referenced at start, P-SIM-00005 is 0"
+        yield problem(parameters, errors.CONTRADICTION, ids.HOMING_HOMING_TYPE, (), text)
+    if parameters.text(ids.HOMING_HOMING_TYPE) == DRIVE_CONTROLLED:
+        yield from homing_by_drive(parameters)
+
+
+def homing_by_drive(parameters: ParameterSet) -> Iterator[Problem]:
+    """Only a SERCOS drive homes on its own, if it has a velocity controller."""
+    kind = int(parameters.number(ids.KENNGR_ANTR_TYP))
+    if kind != DriveType.SERCOS:
+        text = f"{DRIVE_CONTROLLED} needs a SERCOS drive, P-AXIS-00020 kenngr.antr_typ is {kind}"
+        yield problem(parameters, errors.CONTRADICTION, ids.HOMING_HOMING_TYPE, (), text)
+    elif interface(parameters) == "torque":
+        text = f"{DRIVE_CONTROLLED} needs a drive that takes velocities or positions, it takes torques"
         yield problem(parameters, errors.CONTRADICTION, ids.HOMING_HOMING_TYPE, (), text)

@@ -142,6 +142,7 @@ GEAR_CHANGE_TIME_MS = "P-MACH-00051"  # gear.change_time_ms
 MONITORING_SETTLING_TIME_MS = "P-MACH-00052"  # monitoring.settling_time_ms
 HANDSHAKE_TIMEOUT_MS = "P-MACH-00060"  # handshake_timeout_ms
 HOMING_REQUIRED = "P-MACH-00061"  # homing_required
+HOMING_TIMEOUT_MS = "P-MACH-00062"  # homing_timeout_ms
 STATE_RATE_HZ = "P-MACH-00070"  # state_rate_hz
 
 # channel list
@@ -286,5 +287,9 @@ SIMULATION_CAM_LENGTH = "P-SIM-00021"  # simulation.cam_length
 SIMULATION_ZERO_PULSE_DISTANCE = "P-SIM-00022"  # simulation.zero_pulse_distance
 SIMULATION_PROBE_BELOW = "P-SIM-00023"  # simulation.probe_below
 SIMULATION_PROBE_ABOVE = "P-SIM-00024"  # simulation.probe_above
+SERCOS_HOMING_ACCELERATION = "P-SIM-00025"  # simulation.sercos.homing_acceleration
+SERCOS_HOMING_JERK = "P-SIM-00026"  # simulation.sercos.homing_jerk
+SERCOS_VELOCITY_SCALING = "P-SIM-00027"  # simulation.sercos.velocity_scaling
+SERCOS_HOMING_FAULT = "P-SIM-00028"  # simulation.sercos.homing_fault
 SIMULATION_TELEGRAM = "P-SIM-00050"  # simulation.telegram
 SIMULATION_ZERO_PULSE = "P-SIM-00051"  # simulation.zero_pulse

@@ -1,7 +1,7 @@
 """An axis as the kernel uses it, in the gear after start-up."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 from cnc_ptp.parameters.declare import ids
@@ -12,6 +12,7 @@ from cnc_ptp.parameters.view.fields import given_fields
 from cnc_ptp.parameters.view.gears import active_gear, emergency_deceleration
 from cnc_ptp.parameters.view.homing_view import HomingParameters, homing_view
 from cnc_ptp.parameters.view.probe_view import ProbeParameters, probe_view
+from cnc_ptp.parameters.view.sercos_view import sercos_view
 from cnc_ptp.parameters.view.telegram import DriveType
 
 MODULO, MODULO_LINEAR = 0x4, 0x400
@@ -92,6 +93,7 @@ def axis_view(parameters: ParameterSet, cycle_time: float) -> AxisParameters:
     modulo = is_modulo(parameters)
     ends = (ids.GETRIEBE_MODULOU, ids.GETRIEBE_MODULOO) if modulo else SOFT_LIMITS
     low, high = parameters.kernel(ends[0], gear), parameters.kernel(ends[1], gear)
+    homing = homing_view(parameters, gear, high - low)
     return AxisParameters(
         name=parameters.node,
         rotary=parameters.axis_type == "R",
@@ -108,11 +110,28 @@ def axis_view(parameters: ParameterSet, cycle_time: float) -> AxisParameters:
         encoder_increment=encoder_increment(parameters, gear),
         max_override_percent=parameters.percent(ids.KENNGR_MAX_VB_OVERRIDE),
         start_position=start_position(parameters),
-        homing=homing_view(parameters, gear, high - low),
+        homing=homing,
         probe=probe_view(parameters),
-        control=control_view(parameters, gear, cycle_time),
+        control=control_of_axis(parameters, homing, gear, cycle_time),
         **given_fields(AxisParameters, parameters, gear),
     )
+
+
+def control_of_axis(
+    parameters: ParameterSet, homing: HomingParameters, gear: int, cycle_time: float
+) -> ControlParameters:
+    """With what a SERCOS drive knows of its axis."""
+    control = control_view(parameters, gear, cycle_time)
+    if parameters.number(ids.KENNGR_ANTR_TYP) != DriveType.SERCOS:
+        return control
+    of_drive = sercos_view(
+        parameters,
+        homing,
+        acceleration=parameters.kernel(ids.SLOPE_PROFIL_A_BESCHL, gear),
+        jerk=jerk(parameters, gear),
+        position_window=parameters.kernel(ids.GETRIEBE_WINDOW, gear),
+    )
+    return replace(control, sercos=of_drive)
 
 
 def start_position(parameters: ParameterSet) -> float:

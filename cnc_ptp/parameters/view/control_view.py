@@ -12,6 +12,7 @@ from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.view import telegram
 from cnc_ptp.parameters.view.encoder import encoder_increment, increment, resolution, uses_feed_constant
 from cnc_ptp.parameters.view.fields import given_fields
+from cnc_ptp.parameters.view.sercos_view import SercosParameters
 
 VEL, ACC, JERK = 0x001, 0x002, 0x004
 ADD_VEL, ADD_ACC, ADD_JERK = 0x100, 0x200, 0x800
@@ -156,6 +157,8 @@ class ControlParameters:
     friction: FrictionParameters
     modulo_error: ModuloError
     plant: PlantParameters
+    sercos: SercosParameters | None = None
+    """Of the SERCOS drive of an axis."""
     path_delay_cycles: int = 0
     """Delay that other axes of the same path need, and this one therefore keeps too."""
 

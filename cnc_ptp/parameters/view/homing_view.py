@@ -10,7 +10,7 @@ from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.view.fields import given_fields
 
-DISABLED, IGNORE_ABSOLUTE = "DISABLED", "IGNORE_ABS_POS"
+DISABLED, IGNORE_ABSOLUTE, DRIVE_CONTROLLED = "DISABLED", "IGNORE_ABS_POS", "DRIVE_CONTROLLED"
 """Of P-AXIS-00299."""
 
 
@@ -34,6 +34,8 @@ class HomingParameters:
     slow: Annotated[float, ids.GETRIEBE_VB_REFLOW]
     range: float
     """Within which each phase must find its signal."""
+    timeout: Annotated[float, ids.HOMING_TIMEOUT_MS]
+    """Within which a drive that homes its axis must acknowledge."""
     cam_position: Annotated[float, ids.SIMULATION_CAM_POSITION]
     cam_length: Annotated[float, ids.SIMULATION_CAM_LENGTH]
     to_zero_pulse: Annotated[float, ids.SIMU_RPF_WEG_BIS_NIP]

@@ -1,0 +1,1 @@
+"""A simulated SERCOS drive: parameters behind a service channel, and homing that the drive does on its own."""
