@@ -75,6 +75,10 @@ class SpindleUnit(Unit):
             self._path,
             FeedforwardCommands(self.spindle.loop, f"spindle {parameters.name}"),
         )
+        self.check_override = self._rotation.check_override
+        self.overlay.full_override = min(100.0, parameters.max_override_percent)
+        self.overlay.begin("override", self.spindle.override_percent)
+        self.overlay.begin("controller_enable", float(parameters.powered_at_start))
         self._cycles = SpindleCycles(self.spindle, procedures, self._queue, self._rotation)
         self.next_number = 1
         """Number of the next motion command."""
