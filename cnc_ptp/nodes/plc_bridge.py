@@ -26,6 +26,7 @@ from cnc_ptp.nodes.bridge.value_topics import ValueTopics
 from cnc_ptp.nodes.topics import LIFE_SIGN, PLC_INPUT, PLC_TOPICS, VALUE_TOPICS, plc_quality, plc_topic
 from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters, read_machine
+from cnc_ptp.plc.hli.hli import Hli
 from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.plc.sequence import is_newer
@@ -43,7 +44,7 @@ class PlcBridgeNode(UnitNode):
     /joint_states (sensor_msgs/JointState) of all axes and spindles; /emergency_stop/active (std_msgs/Bool).
     Subscriptions besides: /<channel|axis|spindle>/override (Override), /<channel>/feed_hold (Switch),
     /<axis|spindle>/enable (Switch), /<axis>/feed_release (FeedRelease), /<axis>/external_setpoint (ExternalSetpoint),
-    /<axis>/jog (Jog), /plc/life_sign (LifeSign), /<unit>/hli/control (<Kind>HliControl), /emergency_stop (std_msgs/Bool).
+    /<axis>/jog (Jog), /plc/life_sign (LifeSign), /<unit>/hli/control (<Kind>HliControl), /emergency_stop (Bool).
     Services besides: /emergency_stop/press, release, reset (std_srvs/Trigger).
     A jog ends when its messages stop. Of overrides, switches and releases a value counts when it changes; the last one
     holds when messages stop; `valid` = false means 100 %, no feed hold, enabled, released, and has no effect on a topic
@@ -146,7 +147,7 @@ class PlcBridgeNode(UnitNode):
         super().destroy_node()
 
     def after_block(self, block: CycleBlock) -> None:
-        """The HLI, and joint states of the cycle before the block: the last one that axes and spindles have reported."""
+        """HLI and joint states of the cycle before the block: the last one that axes and spindles have reported."""
         if isinstance(block, PlcBlock):
             self._hli_topics.publish(self.plc, block, self.stamp)
         self._emergency_stop.show()
@@ -181,9 +182,9 @@ class PlcBridgeNode(UnitNode):
 
 def largest_overrides(machine: MachineParameters) -> dict[str, float]:
     """Percent, by unit; an axis has at most 100."""
-    others = {**machine.channels, **machine.spindles}
     axes = {name: min(100.0, axis.max_override_percent) for name, axis in machine.axes.items()}
-    return axes | {name: unit.max_override_percent for name, unit in others.items()}
+    channels = {name: channel.max_override_percent for name, channel in machine.channels.items()}
+    return axes | channels | {name: spindle.max_override_percent for name, spindle in machine.spindles.items()}
 
 
 def without_text(entry: Entry) -> Entry:

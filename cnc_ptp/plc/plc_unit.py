@@ -35,7 +35,7 @@ SETTLING_TIME = 0.2
 """Seconds that everything must have been at a standstill before a run ends, so that the drives have come to rest."""
 
 SPINDLE_AT_WORK = (AxisStateCode.DISCRETE_MOTION, AxisStateCode.HOMING, AxisStateCode.STOPPING)
-Source = Callable[[int, Mapping[str, CycleBlock]], Iterable[Command]]
+Outside = Callable[[int, Mapping[str, CycleBlock]], Iterable[Command]]
 """Gives commands for the block that begins at a cycle, from what the units have reported."""
 STOP_COMMAND = {"axis": "stop", "spindle": "stop", "channel": "reset"}
 
@@ -78,8 +78,8 @@ class PlcUnit(Unit):
         """Channels and spindles whose functions an external PLC answers."""
         self.emergency = False
         """The emergency stop is pressed."""
-        self.sources: list[Source] = []
-        """What comes from outside, asked once a block."""
+        self.outside: list[Outside] = []
+        """What external PLCs command, asked once a block."""
         self._life_sign_on = True
         self._life_sign = 0
         self._commands_sent = 0
@@ -229,8 +229,8 @@ class PlcUnit(Unit):
         self.setpoints.watch(inputs)
         self._play_scenario(first_cycle)
         self._answer_requests(first_cycle, inputs)
-        for source in self.sources:
-            self._outgoing += source(first_cycle, inputs)
+        for commands_of in self.outside:
+            self._outgoing += commands_of(first_cycle, inputs)
         automatic = {unit for unit in self._kinds if self._auto_acknowledge and unit not in self._served}
         self._outgoing += spindle_answers(inputs, changes_gears_of=automatic)
         self._outgoing += self.setpoints.take(first_cycle, count)

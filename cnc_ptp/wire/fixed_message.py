@@ -23,7 +23,7 @@ class Place(NamedTuple):
 
     name: str
     code: str
-    count: int | None
+    length: int | None
 
 
 class FixedMessage:
@@ -49,8 +49,8 @@ class FixedMessage:
         codes, size = ["<"], residue
         for place in self._places:
             padding = -size % SIZES[place.code]
-            codes.append(f"{padding}x{place.count or 1}{place.code}")
-            size += padding + SIZES[place.code] * (place.count or 1)
+            codes.append(f"{padding}x{place.length or 1}{place.code}")
+            size += padding + SIZES[place.code] * (place.length or 1)
         return "".join(codes)
 
     def split(self, data: bytes) -> tuple[str, int]:
@@ -65,7 +65,7 @@ class FixedMessage:
         """The fields behind the header, which ends at `end`. Raises struct.error for a message that is too short."""
         values = iter(self._structs[(end - len(ENCAPSULATION)) % WIDEST].unpack_from(data, end))
         return {
-            place.name: next(values) if place.count is None else tuple(next(values) for _ in range(place.count))
+            place.name: next(values) if place.length is None else tuple(next(values) for _ in range(place.length))
             for place in self._places
         }
 

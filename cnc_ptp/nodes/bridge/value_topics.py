@@ -48,7 +48,7 @@ class ValueTopics:
         self._newest: dict[str, Command] = {}
         self._last: dict[str, str] = {}
         self._readers = {of: FixedMessage(f"cnc_ptp/msg/{of.__name__}") for of in {*VALUE_TOPICS.values()}}
-        plc.sources.append(self._commands)
+        plc.outside.append(self._commands)
 
     def receiver(self, unit: str, name: str) -> Callable[[bytes], None]:
         """Takes the messages of a topic in VALUE_TOPICS as bytes."""
@@ -129,11 +129,12 @@ class ValueTopics:
         """What has fallen silent: the last value holds, with a warning."""
         now = time.monotonic()
         for topic in sorted(self._overrides.fallen_silent(now)):
-            self._warn(
-                OVERRIDE_STALE, f"plc: no message on {topic} for {self._timeout_text}; the override is unchanged"
-            )
+            self._warn(OVERRIDE_STALE, f"{self._silence_on(topic)}; the override is unchanged")
         for topic in self._factors.fallen_silent(now):
-            self._warn(FACTOR_STALE, f"plc: no message on {topic} for {self._timeout_text}; the factor is unchanged")
+            self._warn(FACTOR_STALE, f"{self._silence_on(topic)}; the factor is unchanged")
+
+    def _silence_on(self, topic: str) -> str:
+        return f"plc: no message on {topic} for {self._timeout_text}"
 
 
 def switch(unit: str, message: Fields, *, command: str, idle: bool) -> Command:

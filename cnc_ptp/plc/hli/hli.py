@@ -31,7 +31,7 @@ class Hli:
             for name, kind in kinds.items()
             if kind != "plc"
         }
-        plc.sources.append(self.commands)
+        plc.outside.append(self.commands)
 
     def _note(self, number: int, text: str) -> None:
         self._notes.append((number, text))

@@ -167,9 +167,8 @@ class ObjectControl:
             return True
         before = self._wanted.get(unit.name)
         now = f"{before[0]:g} holds" if before is not None else "nobody serves it"
-        text = (
-            f"{unit.name}: command {value:g} is not {'' if whole else 'a whole number '}within 0 ... {largest:g}; {now}"
-        )
+        number = "" if unit.value == PERCENT else "a whole number "
+        text = f"{unit.name}: command {value:g} is not {number}within 0 ... {largest:g}; {now}"
         self._tell_once(BAD_VALUE, unit.name, text)
         return False
 
