@@ -23,15 +23,17 @@ from cnc_ptp.axis.override_filter import OverrideFilter
 from cnc_ptp.axis.ptp import SMALLEST_OVERRIDE, PtpGenerator
 from cnc_ptp.axis.target_window import TargetWindow
 from cnc_ptp.errors import Value
+from cnc_ptp.motion.limits import Limits
 from cnc_ptp.motion.setpoints import MotionState, Setpoints
 from cnc_ptp.parameters import AxisParameters
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import StatusBit
 from cnc_ptp.protocol.transitions import Transition, require_source
+from cnc_ptp.protocol.unit import EMERGENCY_STOP
 
 CONSTANT_VELOCITY, IN_TARGET_POSITION = int(StatusBit.CONSTANT_VELOCITY), int(StatusBit.IN_TARGET_POSITION)
 
-PAIR_ERRORS = (FEED_WITHHELD, GANTRY_DIFFERENCE, GROUP_ERROR)
+PAIR_ERRORS = (FEED_WITHHELD, GANTRY_DIFFERENCE, GROUP_ERROR, EMERGENCY_STOP)
 """Errors in which the slave of a gantry pair stops with its master."""
 ROUNDING = 1e-9
 """Part of a velocity limit."""
@@ -95,6 +97,12 @@ class Axis:
         self._propagated_at = 0
         self._report_error = report_error
         self._report_warning = report_warning
+
+    @property
+    def emergency_limits(self) -> Limits:
+        """Those of the emergency ramp: P-AXIS-00003, never weaker than the axis' own deceleration."""
+        strongest = max(self.own_limits.deceleration, self.parameters.emergency_deceleration)
+        return self.own_limits._replace(deceleration=strongest)
 
     @property
     def modulo_range(self) -> tuple[float, float]:
@@ -406,15 +414,27 @@ class Axis:
             self.leave_master(cycle)
         self.absorb(cycle)
         self._note_propagation(cycle, error_id)
-        led = self.lead.active
-        if led:
-            self.lead.cancel()
-        else:
-            self.ptp.stop(cycle, self.own_limits, at_least=True)
+        effect = self._stop_for(cycle, error_id)
         self.target_window.forget()
         self.take(T.FAULT)
-        ramp = "the drive stops on its ramp" if led else "the axis stops on its own ramp"
-        self._report_error(cycle, error_id, f"axis {self.name}: {reason}; {ramp} (ErrorStop)")
+        self._report_error(cycle, error_id, f"axis {self.name}: {reason}; {effect} (ErrorStop)")
+
+    def _stop_for(self, cycle: int, error_id: int) -> str:
+        """The ramp of a fault: the drive's where it leads the axis, that of an emergency stop, or the axis' own."""
+        if self.lead.active:
+            self.lead.cancel()
+            return "the drive stops on its ramp"
+        emergency = error_id == EMERGENCY_STOP
+        self.ptp.stop(cycle, self.emergency_limits if emergency else self.own_limits, at_least=True)
+        return f"the axis stops on its {'emergency' if emergency else 'own'} ramp"
+
+    def stop_in_emergency(self, cycle: int) -> None:
+        """Down to standstill on the emergency ramp, state ErrorStop; a ramp that an error has started gets stronger."""
+        if self.error_id:
+            if self.state == S.ERROR_STOP and not self.ptp.finished(cycle):
+                self.ptp.stop(cycle, self.emergency_limits, at_least=True)
+            return
+        self.fault(cycle, EMERGENCY_STOP, "emergency stop")
 
     def pair_in(self, error_id: int) -> Coupling | None:
         """The coupling on which the slave of a gantry pair stays in this error."""

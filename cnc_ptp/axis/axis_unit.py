@@ -85,12 +85,16 @@ class AxisUnit(Unit):
         known = axes or {parameters.name: parameters}
         self._path = PathSource(self._axis)
         self._master = MasterSource(self._axis, axes=known, cycle_time=cycle_time)
+        self._override = OverrideCommands(self._axis)
+        self.check_override = self._override.check
+        self.overlay.full_override = self._override.highest
+        self.overlay.begin("controller_enable", float(parameters.powered_at_start))
         self._commands = (
             self,
             PowerCommands(self._axis, actual_position=lambda: self._loop.position),
             FeedReleaseCommands(self._axis),
             PtpCommands(self._axis),
-            OverrideCommands(self._axis),
+            self._override,
             StopCommands(self._axis),
             JogCommands(self._axis),
             HomingCommands(self._axis, self._homing, self._drive_homing),

@@ -17,13 +17,20 @@ class OverrideCommands:
     def __init__(self, axis: Axis) -> None:
         self._axis = axis
 
+    @property
+    def highest(self) -> float:
+        return min(100.0, self._axis.parameters.max_override_percent)
+
+    def check(self, command: str, percent: float) -> None:
+        """Raises 23006 for an override that the axis does not have."""
+        if not 0.0 <= percent <= self.highest:
+            reason = f"percent = {percent} is not within 0 ... {self.highest:g} (P-AXIS-00109, at most 100)"
+            self._axis.refuse(command, BAD_OVERRIDE, reason, percent=percent, limit=self.highest)
+
     def do_set_override(self, cycle: int, *, percent: float) -> str | None:
         """Override of PTP motion, 0 … 100 % rounded to 0.0001 %, through the filter if there is one."""
         axis = self._axis
-        highest = min(100.0, axis.parameters.max_override_percent)
-        if not 0.0 <= percent <= highest:
-            reason = f"percent = {percent} is not within 0 ... {highest:g} (P-AXIS-00109, at most 100)"
-            axis.refuse("set_override", BAD_OVERRIDE, reason, percent=percent, limit=highest)
+        self.check("set_override", percent)
         used = axis.override_filter.take(cycle, round(percent, OVERRIDE_DECIMALS))
         if used is None or axis.set_override(cycle, used) or axis.state not in (S.DISCRETE_MOTION, S.STOPPING):
             return None

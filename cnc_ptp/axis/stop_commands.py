@@ -95,6 +95,14 @@ class StopCommands:
         ramp = "the drive stops on its own ramp (S-0-0042, S-0-0349); deceleration and jerk have no effect"
         return warning_text(EMERGENCY_CORRECTED, f"axis {axis.name}: emergency_stop: {ramp}")
 
+    def do_set_emergency_stop(self, cycle: int, *, enabled: bool) -> None:
+        """The emergency stop of the machine or of the HLI: to ErrorStop on the emergency ramp (P-AXIS-00003).
+
+        It acts in every state and whoever moves the axis. When it is released nothing moves: the axis wants a reset.
+        """
+        if enabled:
+            self._axis.stop_in_emergency(cycle)
+
     def _brakes_naturally(self, cycle: int) -> bool:
         """In the natural brake phase, with no superimposed motion and no external setpoints enabled."""
         axis = self._axis

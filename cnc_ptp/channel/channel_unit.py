@@ -50,7 +50,7 @@ from cnc_ptp.protocol.blocks import ChannelBlock, Command, CycleBlock, CycleTick
 from cnc_ptp.protocol.channel_states import ChannelStateCode
 from cnc_ptp.protocol.commands import BAD_ARGUMENT
 from cnc_ptp.protocol.notes import START_STEP
-from cnc_ptp.protocol.unit import UPSTREAM_LOST, Unit
+from cnc_ptp.protocol.unit import EMERGENCY_STOP, UPSTREAM_LOST, Unit
 
 NO_PROGRAM = 22003
 NOT_NOW = 22004
@@ -132,6 +132,9 @@ class ChannelUnit(Unit):
         """The program ended, or a homing began, after the last cycle of the previous block."""
         self._feedback: Mapping[str, CycleBlock] = {}
         self._override_percent = min(100.0, parameters.max_override_percent)
+        self.check_override = self._check_override
+        self.overlay.full_override = self._override_percent
+        self.overlay.begin("override", self._override_percent)
         self._feed_hold = False
         self._element_begins = False
         """The active element starts with the next block: what axes report belongs to the previous one."""
@@ -162,12 +165,12 @@ class ChannelUnit(Unit):
 
     # commands
 
-    def _dispatch(self, command: str, arguments: Mapping[str, Any], cycle: int) -> None:
+    def _dispatch(self, command: Command, cycle: int) -> Command:
         """An error that does not say what happens now, as those of programs, says it here."""
         try:
-            super()._dispatch(command, arguments, cycle)
+            return super()._dispatch(command, cycle)
         except CncError as error:
-            error.effect = error.effect or EFFECTS.get(command, "nothing was changed")
+            error.effect = error.effect or EFFECTS.get(command.command, "nothing was changed")
             raise
 
     def do_load(
@@ -275,17 +278,23 @@ class ChannelUnit(Unit):
 
     def do_set_override(self, cycle: int, *, percent: float) -> None:
         """Path override, 0 … P-CHAN-00056 %; acts on feed and rapid."""
-        limit = self._parameters.max_override_percent
-        if not 0.0 <= percent <= limit:
-            self._refuse(
-                "set_override",
-                BAD_OVERRIDE,
-                f"percent = {percent} is not within 0 ... {limit:g} (P-CHAN-00056)",
-                percent=percent,
-                limit=limit,
-            )
+        self._check_override("set_override", percent)
         self._override_percent = float(percent)
         self._apply_override()
+
+    def _check_override(self, command: str, percent: float) -> None:
+        limit = self._parameters.max_override_percent
+        if not 0.0 <= percent <= limit:
+            reason = f"percent = {percent} is not within 0 ... {limit:g} (P-CHAN-00056)"
+            self._refuse(command, BAD_OVERRIDE, reason, percent=percent, limit=limit)
+
+    def requested(self, command: str, arguments: Mapping[str, Any]) -> dict[str, float]:
+        """See Unit."""
+        level = arguments.get("level", 1) if command == "block_skip" else 1
+        if not 1 <= level <= MAX_SKIP_LEVEL:
+            reason = f"level = {level} is not within 1 ... {MAX_SKIP_LEVEL}"
+            self._refuse(command, BAD_ARGUMENT, reason, level=level)
+        return super().requested(command, arguments)
 
     def do_single_block(self, cycle: int, *, enabled: bool, mode: str = "block") -> None:
         """Single block: the channel stops after each block, or (mode `motion`) after each motion, until `start`."""
@@ -295,13 +304,9 @@ class ChannelUnit(Unit):
         """Makes M01 a stop like M00 (off by default)."""
         self._sequence.optional_stop = enabled
 
-    def do_block_skip(self, cycle: int, *, enabled: bool, level: int = 1) -> None:
-        """Skips blocks with / (level 1) or /2 … /10 from the next start on (off by default)."""
-        if not 1 <= level <= MAX_SKIP_LEVEL:
-            reason = f"level = {level} is not within 1 ... {MAX_SKIP_LEVEL}"
-            self._refuse("block_skip", BAD_ARGUMENT, reason, level=level)
-        bit = 1 << level - 1
-        self._check.block_skip = self._check.block_skip | bit if enabled else self._check.block_skip & ~bit
+    def do_block_skip(self, cycle: int, *, levels: int) -> None:
+        """Skips blocks with / (level 1, bit 0) or /2 … /10 from the next start on (off by default)."""
+        self._check.block_skip = levels
 
     def do_reset(self, cycle: int) -> None:
         """Aborts the program on the path ramp and clears the error; refused while an error ramp runs (22008).
@@ -316,6 +321,11 @@ class ChannelUnit(Unit):
             text = f"channel {self.name}: reset within a thread; {broken_off}"
             self.event(cycle, Severity.WARNING, THREAD_BROKEN, text, self._sequence.source.line)
         self._sequence.ramp_down(keep=self._turning_after_reset)
+
+    def do_set_emergency_stop(self, cycle: int, *, enabled: bool) -> None:
+        """The emergency stop of the machine or of the HLI: the program is aborted, the channel wants a reset."""
+        if enabled:
+            self._fault(cycle, EMERGENCY_STOP, "emergency stop")
 
     def do_acknowledge(self, cycle: int, *, id: int) -> None:
         """The PLC's answer to a handshake request."""

@@ -148,8 +148,9 @@ class PathSpindle:
             if block.status_bits[-1] & SpindleBit.ON_PATH:
                 if not self.node:
                     self.node, self.angle = spindle.node, block.set_position_deg[-1] % 360.0
-                suppressed = block.status_bits[-1] & SpindleBit.OVERRIDE_SUPPRESSED
-                self.override = 1.0 if suppressed else block.override_percent[-1] / 100.0
+                bits = block.status_bits[-1]
+                percent = 100.0 if bits & SpindleBit.OVERRIDE_SUPPRESSED else block.override_percent[-1]
+                self.override = 0.0 if bits & SpindleBit.FEED_HOLD else percent / 100.0
             elif self.node:
                 self._forget()
                 raise CncError(SPINDLE_LEFT_PATH, f"spindle {spindle.node} no longer follows the path")

@@ -79,6 +79,7 @@ class UnitRunner:
         self.unit.note_jobs(block)
         block.job, block.job_events = self.unit.jobs.active, self.unit.jobs.take_events()
         block.answers, self._answers = self._answers, []
+        block.control_units = self.unit.overlay.news()
 
     def _note_state(self, block: CycleBlock) -> None:
         """An event when the unit ends the block in another state than the previous block."""

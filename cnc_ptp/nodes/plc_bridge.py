@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import math
 import sys
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable
 from functools import partial
 from typing import Any
 
@@ -19,38 +18,41 @@ from cnc_ptp.machine.silence import Silence
 from cnc_ptp.machine.wiring import build_unit
 from cnc_ptp.nodes import node_command_line, process
 from cnc_ptp.nodes.bridge.coupling_services import CouplingServices
+from cnc_ptp.nodes.bridge.hli.emergency_stop import EmergencyStopTopics
+from cnc_ptp.nodes.bridge.hli.hli_topics import HliTopics
 from cnc_ptp.nodes.bridge.jog_topics import PATIENCE as JOG_PATIENCE
 from cnc_ptp.nodes.bridge.jog_topics import JogTopics
 from cnc_ptp.nodes.bridge.joint_states import JointStates
 from cnc_ptp.nodes.bridge.plc_watch import PlcWatch
-from cnc_ptp.nodes.bridge.sequence import is_newer
-from cnc_ptp.nodes.topics import LIFE_SIGN, PLC_INPUT, PLC_TOPICS, plc_quality, plc_topic
+from cnc_ptp.nodes.bridge.value_topics import ValueTopics
+from cnc_ptp.nodes.topics import LIFE_SIGN, PLC_INPUT, PLC_TOPICS, VALUE_TOPICS, plc_quality, plc_topic
 from cnc_ptp.nodes.unit.unit_node import UnitNode
-from cnc_ptp.parameters import AxisParameters, ChannelParameters, MachineParameters, SpindleParameters, read_machine
+from cnc_ptp.parameters import MachineParameters, read_machine
+from cnc_ptp.plc.hli.hli import Hli
 from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.plc.program.plc_program import PlcFile
 from cnc_ptp.plc.scenario import Entry
-from cnc_ptp.protocol.blocks import Command, CycleBlock, Severity
+from cnc_ptp.plc.sequence import is_newer
+from cnc_ptp.protocol.blocks import Command, CycleBlock, PlcBlock, Severity
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.start_options import start_options, take_start
 
 LIFE_SIGN_LOST = 26103
-FACTOR_STALE = 26118
-OVERRIDE_STALE = 26119
-FULL_OVERRIDE = 100.0
 
 
 class PlcBridgeNode(UnitNode):
     """UnitNode of the PLC.
 
-    Publishes besides: /joint_states (sensor_msgs/JointState) of all axes and spindles, while somebody subscribes.
+    Publishes besides, while somebody subscribes: /<unit>/hli/status of each axis, spindle and channel once per block,
+    /joint_states (sensor_msgs/JointState) of all axes and spindles; /emergency_stop/active (std_msgs/Bool).
     Subscriptions besides: /<channel|axis|spindle>/override (Override), /<channel>/feed_hold (Switch),
     /<axis|spindle>/enable (Switch), /<axis>/feed_release (FeedRelease), /<axis>/external_setpoint (ExternalSetpoint),
-    /<axis>/jog (Jog), /plc/life_sign (LifeSign). A jog ends when its messages stop. Of overrides, switches and
-    releases a value counts when it changes; the last one holds when messages stop; `valid` = false means 100 %, no feed
-    hold, enabled, released, and has no effect on a topic that was never valid. An override of a spindle that
-    came in a rhythm and falls silent is an event. A life sign that was seen once and then is silent for P-MACH
-    life_sign_timeout_ms sets feed hold on all channels.
+    /<axis>/jog (Jog), /plc/life_sign (LifeSign), /<unit>/hli/control (<Kind>HliControl), /emergency_stop (Bool).
+    Services besides: /emergency_stop/press, release, reset (std_srvs/Trigger).
+    A jog ends when its messages stop. Of overrides, switches and releases a value counts when it changes; the last one
+    holds when messages stop; `valid` = false means 100 %, no feed hold, enabled, released, and has no effect on a topic
+    that was never valid. An override of a spindle that came in a rhythm and falls silent is an event. A life sign that
+    was seen once and then is silent for P-MACH life_sign_timeout_ms sets feed hold on all channels.
     """
 
     def __init__(
@@ -68,18 +70,17 @@ class PlcBridgeNode(UnitNode):
         if self.plc.program is not None:
             self.plc.program.guard = PlcWatch(machine.watchdog_ms)
         self._sequence: dict[str, int] = {}
-        self._last: dict[str, str] = {}
-        self._served: set[str] = set()
         self._life_sign_timeout = machine.life_sign_timeout_ms / 1000.0
         self._life_sign_counter: int | None = None
         self._channels = list(machine.channels)
-        units: Mapping[str, ChannelParameters | AxisParameters | SpindleParameters]
-        units = {**machine.channels, **machine.axes, **machine.spindles}
-        self._highest_override = {name: unit.max_override_percent for name, unit in units.items()}
-        self._spindles = list(machine.spindles)
         self._life_signs = Silence(self._life_sign_timeout)
-        self._overrides = Silence(self._life_sign_timeout, rhythm=True)
-        self._factors = Silence(self._life_sign_timeout)
+        self._values = ValueTopics(machine, self.plc, self._warn)
+        self._hli = Hli(
+            self.plc,
+            kinds=self._kinds,
+            largest_overrides=largest_overrides(machine),
+            timeout=self._life_sign_timeout,
+        )
         self._jogs = JogTopics(self._warn)
         self._joints_due = 0
         self._answers: CouplingServices | None = None
@@ -88,15 +89,25 @@ class PlcBridgeNode(UnitNode):
         """As UnitNode, with the topics of the PLC, couplings and joint states."""
         super().setup()
         for unit, kind in self._kinds.items():
-            for name, message_type in PLC_TOPICS.get(kind, {}).items():
-                self.create_subscription(
-                    message_type, plc_topic(unit, name), self._receiver(unit, name), plc_quality(message_type)
-                )
+            for name in PLC_TOPICS.get(kind, {}):
+                self._listen(unit, name)
+        self._hli_topics = HliTopics(self, self._hli)
+        self._emergency_stop = EmergencyStopTopics(self, self.plc)
         self.create_timer(JOG_PATIENCE / 4.0, self._watch_jogs)
         self.create_subscription(msg.LifeSign, LIFE_SIGN, self._on_life_sign, PLC_INPUT)
         self.create_timer(self._life_sign_timeout / 4.0, self._watch_topics)
         self._answers = CouplingServices(self, self.plc, list(self._machine.axes))
         self._joints = JointStates(self, self._machine)
+
+    def _listen(self, unit: str, name: str) -> None:
+        """To a topic of PLC_TOPICS; those of the HLI are read by HliTopics."""
+        series = {"external_setpoint": self._on_external_setpoint, "jog": self._on_jog}
+        topic = plc_topic(unit, name)
+        if name in VALUE_TOPICS:
+            self.poll(VALUE_TOPICS[name], topic, self._values.receiver(unit, name), PLC_INPUT)
+        elif name in series:
+            message_type = PLC_TOPICS[self._kinds[unit]][name]
+            self.create_subscription(message_type, topic, partial(series[name], unit), plc_quality(message_type))
 
     @property
     def plc(self) -> PlcUnit:
@@ -104,78 +115,12 @@ class PlcBridgeNode(UnitNode):
         assert isinstance(self.unit, PlcUnit)
         return self.unit
 
-    def _receiver(self, unit: str, name: str) -> Callable[[Any], None]:
-        """The callback for the messages of a topic in PLC_TOPICS."""
-        series = {"external_setpoint": self._on_external_setpoint, "jog": self._on_jog}
-        if name in series:
-            return partial(series[name], unit)
-        values: dict[str, Callable[[str, Any], Command | None]] = {
-            "override": self._override,
-            "feed_hold": partial(self._switch, command="feed_hold", idle=False),
-            "enable": partial(self._switch, command="power", idle=True),
-            "feed_release": self._feed_release,
-            "coupling_factor": self._coupling_factor,
-        }
-        return partial(self._on_value, unit, f"/{unit}/{name}", values[name])
-
-    def _on_value(self, unit: str, topic: str, command_of: Callable[[str, Any], Command | None], message: Any) -> None:
-        """A value counts when it changes."""
-        if not is_newer(message.sequence, self._sequence.get(topic, 0)):
-            return
-        self._sequence[topic] = message.sequence
-        if message.valid:
-            self._served.add(topic)
-        elif topic not in self._served:
-            return  # an empty message of a client that has never served the topic releases nothing
-        command = command_of(unit, message)
-        if command is not None and self._last.get(topic) != command.arguments_json:
-            self._last[topic] = command.arguments_json
-            self.input(command)
-
-    def _override(self, unit: str, message: msg.Override) -> Command:
-        if unit in self._spindles:
-            self._overrides.heard(f"/{unit}/override", time.monotonic())
-        full = min(FULL_OVERRIDE, self._highest_override[unit])
-        return Command(unit, "set_override", {"percent": message.percent if message.valid else full})
-
-    @staticmethod
-    def _switch(unit: str, message: msg.Switch, *, command: str, idle: bool) -> Command:
-        return Command(unit, command, {"enabled": message.enabled if message.valid else idle})
-
-    @staticmethod
-    def _feed_release(unit: str, message: msg.FeedRelease) -> Command:
-        released = {"forward": message.forward or not message.valid, "backward": message.backward or not message.valid}
-        return Command(unit, "set_feed_release", released)
-
-    def _coupling_factor(self, unit: str, message: msg.CyclicCouplingFactor) -> Command | None:
-        """If not valid, no number, or no slave: nothing changes."""
-        topic = f"/{unit}/coupling_factor"
-        coupled = self.plc.is_coupled(unit)
-        if not coupled:
-            self._last.pop(topic, None)  # what comes first after the next coupling is a change
-        if not (coupled and message.valid):
-            self._factors.forget(topic)
-            return None
-        if not math.isfinite(message.factor):
-            return None
-        self._factors.heard(topic, time.monotonic())
-        return Command(unit, "set_cyclic_factor", {"factor": message.factor})
-
     def _watch_topics(self) -> None:
         """One timer for all of them: the executor warns of many."""
+        self.look()
         self._watch_life_sign()
-        self._watch_overrides()
-        self._watch_factors()
-
-    def _watch_factors(self) -> None:
-        """A factor whose topic falls silent freezes: the last one holds, with a warning."""
-        for topic in self._factors.fallen_silent(time.monotonic()):
-            self._warn(FACTOR_STALE, f"plc: no message on {topic} for {self._silence}; the factor is unchanged")
-
-    def _watch_overrides(self) -> None:
-        """The last override of a spindle holds when its topic falls silent, with a warning."""
-        for topic in sorted(self._overrides.fallen_silent(time.monotonic())):
-            self._warn(OVERRIDE_STALE, f"plc: no message on {topic} for {self._silence}; the override is unchanged")
+        self._values.watch()
+        self._hli_topics.watch()
 
     @property
     def _silence(self) -> str:
@@ -214,7 +159,10 @@ class PlcBridgeNode(UnitNode):
         super().destroy_node()
 
     def after_block(self, block: CycleBlock) -> None:
-        """Joint states of the cycle before the block: the last one that axes and spindles have reported."""
+        """HLI and joint states of the cycle before the block: the last one that axes and spindles have reported."""
+        if isinstance(block, PlcBlock):
+            self._hli_topics.publish(self.plc, block, self.stamp)
+        self._emergency_stop.show()
         if not self._state_period or block.first_cycle < max(self._joints_due, 1):
             return
         self._joints_due = block.first_cycle + self._state_period
@@ -235,15 +183,20 @@ class PlcBridgeNode(UnitNode):
         if not self._life_signs.fallen_silent(time.monotonic()):
             return
         for channel in self._channels:
-            self._served.add(f"/{channel}/feed_hold")
-            hold = Command(channel, "feed_hold", {"enabled": True})
-            self._last[f"/{channel}/feed_hold"] = hold.arguments_json  # so that the PLC's next `off` counts as a change
-            self.input(hold)
+            self._hli.objects[channel].hold_feed()
+            self._values.hold_feed(channel)
         reason = f"no life sign of the external PLC for {self._silence}"
         self._warn(LIFE_SIGN_LOST, f"plc: {reason}; feed hold is set on all channels")
 
     def _warn(self, error_id: int, text: str) -> None:
         self.tell(Severity.WARNING, error_id, text)
+
+
+def largest_overrides(machine: MachineParameters) -> dict[str, float]:
+    """Percent, by unit; an axis has at most 100."""
+    axes = {name: min(100.0, axis.max_override_percent) for name, axis in machine.axes.items()}
+    channels = {name: channel.max_override_percent for name, channel in machine.channels.items()}
+    return axes | channels | {name: spindle.max_override_percent for name, spindle in machine.spindles.items()}
 
 
 def without_text(entry: Entry) -> Entry:

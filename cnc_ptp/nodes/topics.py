@@ -62,6 +62,7 @@ SERVICES: dict[str, dict[str, Any]] = {
         "move_absolute": srv.MoveAbsolute,
         "move_relative": srv.MoveRelative,
         "move_modulo": srv.MoveModulo,
+        "feed_hold": srv.SetHold,
         "set_override": srv.SetOverride,
         "set_override_type": srv.SetOverrideType,
         "stop": srv.Execute,
@@ -91,6 +92,7 @@ SERVICES: dict[str, dict[str, Any]] = {
         "home": srv.CommandSpindle,
         "set_override": srv.SetOverride,
         "suppress_override": srv.SetSwitch,
+        "feed_hold": srv.SetHold,
         "select_gear": srv.SelectGear,
         "gear_changed": srv.Execute,
         "set_limits": srv.SetSpindleLimits,
@@ -121,6 +123,8 @@ SERVICES: dict[str, dict[str, Any]] = {
         "auto_acknowledge": srv.SetSwitch,
         "set_life_sign": srv.SetHold,
         "set_input": srv.SetInput,
+        "emergency_stop": srv.SetSwitch,
+        "reset": srv.Execute,
         "stop_all": srv.Execute,
     },
 }
@@ -136,20 +140,46 @@ COUPLING_SERVICES: dict[str, Any] = {
 }
 """Services of the axes that the plc_bridge answers: it sees all axes, and reads the tables."""
 
-OVERRIDE_INPUT = {"override": msg.Override}
-PLC_TOPICS: dict[str, dict[str, Any]] = {
-    "channel": {**OVERRIDE_INPUT, "feed_hold": msg.Switch},
-    "axis": {
-        **OVERRIDE_INPUT,
-        "enable": msg.Switch,
-        "feed_release": msg.FeedRelease,
-        "external_setpoint": msg.ExternalSetpoint,
-        "coupling_factor": msg.CyclicCouplingFactor,
-        "jog": msg.Jog,
-    },
-    "spindle": {**OVERRIDE_INPUT, "enable": msg.Switch},
+VALUE_TOPICS: dict[str, Any] = {
+    "override": msg.Override,
+    "feed_hold": msg.Switch,
+    "enable": msg.Switch,
+    "feed_release": msg.FeedRelease,
+    "coupling_factor": msg.CyclicCouplingFactor,
 }
-"""Topics `/<unit>/<name>` that the PLC writes, by kind of unit; besides its life sign."""
+"""Topics `/<unit>/<name>` with one value that a PLC writes cyclically."""
+
+HLI_CONTROL: dict[str, Any] = {
+    "axis": msg.AxisHliControl,
+    "spindle": msg.SpindleHliControl,
+    "channel": msg.ChannelHliControl,
+}
+HLI_STATUS: dict[str, Any] = {
+    "axis": msg.AxisHliStatus,
+    "spindle": msg.SpindleHliStatus,
+    "channel": msg.ChannelHliStatus,
+}
+"""The HLI of an object, by kind of unit: from the PLC, to the PLC."""
+CONTROL = "hli/control"
+STATUS = "hli/status"
+EMERGENCY_STOP_TOPIC = "emergency_stop"
+
+
+def value_topics(*names: str) -> dict[str, Any]:
+    return {name: VALUE_TOPICS[name] for name in names}
+
+
+PLC_TOPICS: dict[str, dict[str, Any]] = {
+    "channel": {**value_topics("override", "feed_hold"), CONTROL: HLI_CONTROL["channel"]},
+    "axis": {
+        **value_topics("override", "enable", "feed_release", "coupling_factor"),
+        "external_setpoint": msg.ExternalSetpoint,
+        "jog": msg.Jog,
+        CONTROL: HLI_CONTROL["axis"],
+    },
+    "spindle": {**value_topics("override", "enable"), CONTROL: HLI_CONTROL["spindle"]},
+}
+"""Topics `/<unit>/<name>` that the PLC writes, by kind of unit; besides its life sign and the emergency stop."""
 
 
 def plc_topic(unit: str, name: str) -> str:
@@ -159,6 +189,14 @@ def plc_topic(unit: str, name: str) -> str:
 def plc_quality(message_type: Any) -> QoSProfile:
     """External setpoints are a series of which none may be lost; of the others the newest counts."""
     return BLOCKS if message_type is msg.ExternalSetpoint else PLC_INPUT
+
+
+def hli_control_topic(unit: str) -> str:
+    return plc_topic(unit, CONTROL)
+
+
+def hli_status_topic(unit: str) -> str:
+    return plc_topic(unit, STATUS)
 
 
 def block_topic(unit: str) -> str:

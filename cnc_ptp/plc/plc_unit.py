@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import ClassVar
 
 from cnc_ptp.axis.external_commands import SETPOINTS
@@ -28,7 +28,8 @@ from cnc_ptp.protocol.blocks import (
     Severity,
     SpindleBlock,
 )
-from cnc_ptp.protocol.unit import UPSTREAM_LOST, Unit
+from cnc_ptp.protocol.commands import BAD_ARGUMENT
+from cnc_ptp.protocol.unit import EMERGENCY_HOLDS, EMERGENCY_STOP, UPSTREAM_LOST, Unit
 
 NOTHING_TO_ACKNOWLEDGE = 22013
 CANNOT_GO_ON = 22014
@@ -36,6 +37,8 @@ SETTLING_TIME = 0.2
 """Seconds that everything must have been at a standstill before a run ends, so that the drives have come to rest."""
 
 SPINDLE_AT_WORK = (AxisStateCode.DISCRETE_MOTION, AxisStateCode.HOMING, AxisStateCode.STOPPING)
+Outside = Callable[[int, Mapping[str, CycleBlock]], Iterable[Command]]
+"""Gives commands for the block that begins at a cycle, from what the units have reported."""
 STOP_COMMAND = {"axis": "stop", "spindle": "stop", "channel": "reset"}
 
 
@@ -73,6 +76,12 @@ class PlcUnit(Unit):
         """External setpoints that scenario and topics give."""
         self._auto_acknowledge = True
         self._pending: dict[int, HandshakeRequest] = {}
+        self._served: set[str] = set()
+        """Channels and spindles whose functions an external PLC answers."""
+        self.emergency = False
+        """The emergency stop is pressed."""
+        self.outside: list[Outside] = []
+        """What external PLCs command, asked once a block."""
         self._life_sign_on = True
         self._life_sign = 0
         self._commands_sent = 0
@@ -114,6 +123,15 @@ class PlcUnit(Unit):
         """A command from outside (topic, button): goes out with the next block."""
         self._outgoing.append(command)
 
+    def requests_of(self, channel: str) -> list[HandshakeRequest]:
+        """The functions of a channel that wait for their acknowledgement, oldest first."""
+        return [request for request in self._pending.values() if request.channel == channel]
+
+    def channel_of(self, request_id: int) -> str | None:
+        """The channel that waits for this acknowledgement, None if none does."""
+        request = self._pending.get(request_id)
+        return None if request is None else request.channel
+
     def withdraw(self, command: Command) -> bool:
         """Takes an `input` back; False when it has gone out with a block."""
         waits = any(each is command for each in self._outgoing)
@@ -144,6 +162,43 @@ class PlcUnit(Unit):
         """A value from outside, for a PLC in a file."""
         self._inputs[name] = value
         return None if self.program_runs else f"plc {self.name}: set_input without effect: no PLC in a file runs"
+
+    def do_serve(self, cycle: int, *, unit: str, enabled: bool) -> None:
+        """An external PLC answers the functions of a channel, or the gear changes of a spindle, instead of this one."""
+        if self._kinds.get(unit) not in ("channel", "spindle"):
+            known = ", ".join(name for name, kind in self._kinds.items() if kind in ("channel", "spindle")) or "none"
+            where = f"plc {self.name}: serve refused"
+            reason = f"unit = '{unit}' is no channel or spindle; known are: {known}"
+            raise CncError(BAD_ARGUMENT, reason, "nothing was changed", where=where, unit=unit)
+        (self._served.add if enabled else self._served.discard)(unit)
+
+    def do_emergency_stop(self, cycle: int, *, enabled: bool) -> str | None:
+        """Everything stops at once and is locked until this is off again and each unit has been reset.
+
+        Axes on their emergency ramps (P-AXIS-00003), spindles on their own, channels abort their programs.
+        """
+        if enabled == self.emergency:
+            return f"plc {self.name}: the emergency stop is {'pressed' if enabled else 'released'} already"
+        self.emergency = enabled
+        self.setpoints.clear()
+        units = [unit for unit in self._kinds if unit not in self._lost]
+        self._outgoing += [Command(unit, "set_emergency_stop", {"enabled": enabled}) for unit in units]
+        if enabled:
+            what = "axes stop on their emergency ramps, spindles on their own, programs are aborted"
+            self.event(cycle, Severity.ERROR, EMERGENCY_STOP, f"plc {self.name}: emergency stop; {what}")
+        else:
+            text = f"plc {self.name}: the emergency stop is released; nothing moves before its unit is reset"
+            self.event(cycle, Severity.INFO, 0, text)
+        return None
+
+    def do_reset(self, cycle: int) -> None:
+        """Resets each unit that is in error; refused (26169) before the emergency stop is released."""
+        if self.emergency:
+            where = f"plc {self.name}: reset refused"
+            reason = "the emergency stop holds; release it first"
+            raise CncError(EMERGENCY_HOLDS, reason, "nothing was changed", where=where)
+        failed = [name for name, block in self.reported.items() if error_of(block)]
+        self._outgoing += [Command(name, "reset", {}) for name in failed]
 
     def do_set_life_sign(self, cycle: int, *, enabled: bool) -> None:
         """Stops or resumes the life sign; without it all units stop after the watchdog time."""
@@ -206,7 +261,10 @@ class PlcUnit(Unit):
         self._note_requests(inputs)
         self._run_program(tick, inputs)
         self._acknowledge_all(first_cycle)
-        self._outgoing += spindle_answers(inputs, changes_gears=self._auto_acknowledge)
+        for commands_of in self.outside:
+            self._outgoing += commands_of(first_cycle, inputs)
+        automatic = {unit for unit in self._kinds if self._auto_acknowledge and unit not in self._served}
+        self._outgoing += spindle_answers(inputs, changes_gears_of=automatic)
         self._outgoing += self.setpoints.take(first_cycle, count)
         run_done = self._end_when_idle and self._run_done(count, inputs)
         if self._life_sign_on:
@@ -264,8 +322,9 @@ class PlcUnit(Unit):
 
     def _acknowledge_all(self, cycle: int) -> None:
         if self._auto_acknowledge:
-            for request_id in list(self._pending):
-                self.do_acknowledge(cycle, id=request_id)
+            for request in list(self._pending.values()):
+                if request.channel not in self._served:
+                    self.do_acknowledge(cycle, id=request.id)
 
     def _run_done(self, count: int, inputs: Mapping[str, CycleBlock]) -> bool:
         """Everything has been at a standstill for the settling time; spindles that still turn are stopped first."""

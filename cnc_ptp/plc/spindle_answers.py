@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Container, Iterator, Mapping
 
 from cnc_ptp.protocol.blocks import Command, CycleBlock, SpindleBlock
 
 
-def spindle_answers(inputs: Mapping[str, CycleBlock], *, changes_gears: bool) -> Iterator[Command]:
-    """Answers to what the spindles have reported; `changes_gears`: gear changes are acknowledged immediately."""
+def spindle_answers(inputs: Mapping[str, CycleBlock], *, changes_gears_of: Container[str]) -> Iterator[Command]:
+    """Answers to what the spindles have reported; `changes_gears_of`: whose gear changes are acknowledged at once."""
     spindles = {name: block for name, block in inputs.items() if isinstance(block, SpindleBlock)}
-    if changes_gears:
-        yield from (Command(name, "gear_changed", {}) for name, block in spindles.items() if block.gear_request)
+    for name, block in spindles.items():
+        if block.gear_request and name in changes_gears_of:
+            yield Command(name, "gear_changed", {})
     masters = {name: block.master for name, block in spindles.items() if block.master}
     for name, block in spindles.items():
         if block.master_wanted:

@@ -186,6 +186,16 @@ class JobEvent(NamedTuple):
     error_id: int = 0
 
 
+class ControlUnitState(NamedTuple):
+    """A control unit of the HLI after a change (ControlUnitState.msg, protocol/control_units.py)."""
+
+    name: str
+    held: bool
+    request: float
+    state: float
+    holder: str = ""
+
+
 class CycleTick(NamedTuple):
     """The cycles first_cycle .. first_cycle + count - 1 are to be computed (CycleTick.msg)."""
 
@@ -250,6 +260,7 @@ class ChannelBlock:
     job: int = 0
     job_events: list[JobEvent] = field(default_factory=list)
     answers: list[CommandAnswer] = field(default_factory=list)
+    control_units: list[ControlUnitState] = field(default_factory=list)
 
 
 @dataclass(slots=True)
@@ -289,6 +300,7 @@ class AxisBlock:
     job: int = 0
     job_events: list[JobEvent] = field(default_factory=list)
     answers: list[CommandAnswer] = field(default_factory=list)
+    control_units: list[ControlUnitState] = field(default_factory=list)
 
 
 class Refusal(NamedTuple):
@@ -348,6 +360,7 @@ class SpindleBlock:
     job: int = 0
     job_events: list[JobEvent] = field(default_factory=list)
     answers: list[CommandAnswer] = field(default_factory=list)
+    control_units: list[ControlUnitState] = field(default_factory=list)
 
 
 CycleBlock = PlcBlock | ChannelBlock | AxisBlock | SpindleBlock

@@ -59,6 +59,13 @@ COUPLING: Arguments = {
 }
 """A master, and what the PLC fills in: the master's masters, whether it is at a standstill, whether it is lost."""
 
+OVERLAY: Arguments = {
+    "control_unit": TEXT,
+    "enabled": SWITCH,
+    "value": OPTIONAL_NUMBER,
+    "holder": OPTIONAL_TEXT,
+}
+"""An external PLC serves a control unit of the HLI, or gives it back (protocol/control_units.py)."""
 FEEDFORWARD: Arguments = {"enabled": OPTIONAL_SWITCH, "weight_percent": OPTIONAL_NUMBER}
 
 COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
@@ -66,6 +73,7 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "power": {"enabled": SWITCH},
         "reset": {},
         "set_feed_release": {"forward": SWITCH, "backward": SWITCH},
+        "feed_hold": {"enabled": SWITCH},
         "move_absolute": {"target": NUMBER, **DYNAMICS},
         "move_relative": {"distance": NUMBER, **DYNAMICS},
         "move_modulo": {"position": NUMBER, **DYNAMICS},
@@ -120,6 +128,8 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "set_friction_compensation": {"enabled": SWITCH},
         "read_drive_parameter": {"idn": TEXT},
         "write_drive_parameter": {"idn": TEXT, "value": INTEGER},
+        "overlay": OVERLAY,
+        "set_emergency_stop": {"enabled": SWITCH},
         "lead": {"slave": TEXT, "enabled": SWITCH},
         "group_error": {"source": TEXT, "error": INTEGER},
         "upstream_lost": SOURCE,
@@ -138,6 +148,7 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "home": {**FOR},
         "set_override": {"percent": NUMBER},
         "suppress_override": {"enabled": SWITCH},
+        "feed_hold": {"enabled": SWITCH},
         "select_gear": {"stage": INTEGER, "resume": OPTIONAL_SWITCH, **FOR},
         "gear_changed": {},
         "set_limits": {
@@ -155,6 +166,8 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "set_feedforward": FEEDFORWARD,
         "reset_feedforward": {},
         "reset": {},
+        "overlay": OVERLAY,
+        "set_emergency_stop": {"enabled": SWITCH},
         "upstream_lost": SOURCE,
     },
     "channel": {
@@ -182,6 +195,8 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "set_zero_offset": {"index": INTEGER, "axis": TEXT, "value": NUMBER},
         "teach_zero_offset": {"index": INTEGER, "axis": OPTIONAL_TEXT, "value": OPTIONAL_NUMBER},
         "set_clamp_position": {"index": INTEGER},
+        "overlay": OVERLAY,
+        "set_emergency_stop": {"enabled": SWITCH},
         "upstream_lost": SOURCE,
     },
     "plc": {
@@ -189,6 +204,9 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "auto_acknowledge": {"enabled": SWITCH},
         "set_life_sign": {"enabled": SWITCH},
         "set_input": {"name": TEXT, "value": NUMBER},
+        "serve": {"unit": TEXT, "enabled": SWITCH},
+        "emergency_stop": {"enabled": SWITCH},
+        "reset": {},
         "stop_all": {},
         "abort": {"reason": TEXT},
         "upstream_lost": SOURCE,
@@ -204,6 +222,7 @@ INTERNAL = frozenset(
         "group_error",
         "coupling_answer",
         "set_homing_override",
+        "set_emergency_stop",
         "follow_path",
         "leave_path",
     }

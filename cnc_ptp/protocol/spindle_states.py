@@ -34,12 +34,16 @@ class SpindleBit(IntEnum):
     """Commands wait for their turn."""
     ON_PATH = 1 << 9
     """The path of a channel moves it."""
+    FEED_HOLD = 1 << 10
+    """The feed hold of the HLI stops it."""
 
 
 def held_by_override(block: SpindleBlock) -> bool:
-    """The spindle is to move at the end of its block, and is at a standstill because of override 0."""
-    if block.status_bits[-1] & SpindleBit.OVERRIDE_SUPPRESSED:
+    """The spindle is to move at the end of its block, and is at a standstill because of override 0 or a feed hold."""
+    feed_hold = bool(block.status_bits[-1] & SpindleBit.FEED_HOLD)
+    if block.status_bits[-1] & SpindleBit.OVERRIDE_SUPPRESSED and not feed_hold:
         return False
     turns_on = block.state[-1] == AxisStateCode.CONTINUOUS_MOTION
     moves = turns_on or (block.state[-1] == AxisStateCode.DISCRETE_MOTION and block.distance_to_go_deg[-1] != 0.0)
-    return moves and block.override_percent[-1] == 0.0 and block.set_speed_rpm[-1] == 0.0
+    stopped = feed_hold or block.override_percent[-1] == 0.0
+    return moves and stopped and block.set_speed_rpm[-1] == 0.0

@@ -6,11 +6,12 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import Any, ClassVar, NamedTuple
 
-from cnc_ptp.errors import CncError, Value
+from cnc_ptp.errors import CncError, Value, nearest_name, warning_text
 from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Event, EventValue, Severity, json_of
-from cnc_ptp.protocol.commands import OF_PLC, check_command, current_names, with_floats
+from cnc_ptp.protocol.commands import BAD_ARGUMENT, OF_PLC, check_command, current_names, with_floats
+from cnc_ptp.protocol.control_units import PERCENT, ControlUnit
 from cnc_ptp.protocol.jobs import JOBS, Jobs
-
+from cnc_ptp.protocol.overlay import HELD_BY_PLC, SERVED_BY_PLC, Overlay
 
 
 class Answer(NamedTuple):
@@ -26,6 +27,10 @@ PLC = "plc"
 """Name of the PLC, as a unit and as the source of commands."""
 UPSTREAM_LOST = 26101
 """A unit that is needed has sent nothing within the watchdog time."""
+EMERGENCY_STOP = 26168
+"""Error of a unit in an emergency stop."""
+EMERGENCY_HOLDS = 26169
+"""Refusal: the emergency stop has to be released first."""
 
 
 class Unit(ABC):
@@ -45,6 +50,10 @@ class Unit(ABC):
         """Commands carried out or refused since the last block; the harness takes them away."""
         self.jobs = Jobs()
         """Its motions and programs, by number."""
+        self.overlay = Overlay(self.kind)
+        """Its control units of the HLI."""
+        self.check_override: Callable[[str, float], None] = any_override
+        """Raises CncError for an override (percent) that the unit does not have; the command that asks for it."""
         self.sources: Collection[str] = ()
         """Who may command a spindle; without them every name is accepted."""
         self.lost: set[str] = set()
@@ -62,9 +71,9 @@ class Unit(ABC):
         """Carries out or refuses a command that takes effect at `cycle`, the first cycle of the next block."""
         refusal, job = None, 0
         try:
-            self._dispatch(command.command, command.arguments, cycle)
-            if command.command in JOBS[self.kind]:
-                job = self.begin_job(command, cycle)
+            carried_out = self._dispatch(command, cycle)
+            if carried_out.command in JOBS[self.kind]:
+                job = self.begin_job(carried_out, cycle)
         except CncError as error:
             refusal = error
             self.event(cycle, Severity.WARNING, error.number, error.full_message)
@@ -85,7 +94,7 @@ class Unit(ABC):
         return record
 
     _warning = ""
-    _values: Mapping[str, Value] = {}  # noqa: RUF012
+    _values: Mapping[str, Value] = {}
 
     def begin_job(self, command: Command, cycle: int) -> int:
         """A command that is a job was carried out: the number of the job, 0 if there was nothing to do."""
@@ -95,17 +104,139 @@ class Unit(ABC):
         """Ends the active job when its unit has come to rest in a new block."""
         self.jobs.watch(block)
 
-    def _dispatch(self, command: str, arguments: Mapping[str, Any], cycle: int) -> None:
-        self._warning, self._values = "", {}
-        arguments = current_names(self.kind, command, arguments)
-        check_command(self.kind, self.name, command, arguments, self.sources)
-        answer = self.handler(command)(cycle, **with_floats(self.kind, command, arguments))
+    def _dispatch(self, command: Command, cycle: int) -> Command:
+        """Returns the command that was carried out: an edge of the PLC stands for another one."""
+        self._warning, self._values, name = "", {}, command.command
+        arguments = current_names(self.kind, name, command.arguments)
+        check_command(self.kind, self.name, name, arguments, self.sources)
+        arguments = with_floats(self.kind, name, arguments)
+        if name == "overlay":
+            return self._do_overlay(command, cycle, **arguments)
+        self._refuse_edge(name, by_client=not command.id)
+        requests = self.requested(name, arguments)
+        self._note(self._ask(name, requests, cycle) if requests else self.handler(name)(cycle, **arguments))
+        if name == "upstream_lost":
+            self.lost.add(arguments["source"])
+        return command
+
+    def _note(self, answer: str | Answer | None) -> None:
+        """What a handler has returned goes into the record."""
         if isinstance(answer, Answer):
             self._warning, self._values = answer
         else:
             self._warning = answer or ""
-        if command == "upstream_lost":
-            self.lost.add(arguments["source"])
+
+    # control units of the HLI
+
+    def requested(self, command: str, arguments: Mapping[str, Any]) -> dict[str, float]:
+        """The control units that a command of others concerns, with the values it asks for; checked (CncError)."""
+        requests = self.overlay.asked(command, arguments)
+        if "override" in requests:
+            self.check_override(command, requests["override"])
+        return requests
+
+    def carry_out(self, command: str, cycle: int) -> str | None:
+        """What acts now of the control units that a command is made of; the warning, if any."""
+        answer = self.handler(command)(cycle, **self.overlay.arguments(command))
+        return answer.text if isinstance(answer, Answer) else answer
+
+    def _ask(self, command: str, requests: Mapping[str, float], cycle: int) -> str | None:
+        """A command of others: it acts where the PLC serves nothing of it, and is remembered elsewhere."""
+        overlay = self.overlay
+        before = overlay.ask(requests)
+        held = [name for name in requests if overlay.holder(name) is not None]
+        message: str | None = None
+        if len(held) < len(requests):
+            try:
+                message = self.carry_out(overlay[next(iter(requests))].command, cycle)
+            except CncError:
+                overlay.ask(before)
+                raise
+        return "; ".join(filter(None, [message, *(self._waits(command, name) for name in held)])) or None
+
+    def _waits(self, command: str, name: str) -> str:
+        holder = self.overlay.holder(name)
+        text = (
+            f"{self.kind} {self.name}: {command} waits: the PLC '{holder}' serves {name} and commands "
+            f"{self.overlay.value(name):g}; what is asked for acts when it gives {name} back"
+        )
+        return warning_text(HELD_BY_PLC, text)
+
+    def _refuse_edge(self, command: str, *, by_client: bool) -> None:
+        """Only the PLC carries out an edge that it serves; and nothing is reset before an emergency stop is released.
+
+        What comes in blocks is not refused: the machine's own PLC stops everything at the end, by a reset.
+        """
+        served = self.overlay.served_edge(command) if by_client else None
+        if served is not None:
+            self.overlay.note_request(command)
+            holder = self.overlay.holder(command)
+            reason = f"the PLC '{holder}' serves {command}; it is shown what was asked for"
+            raise self._refusal(command, SERVED_BY_PLC, reason)
+        self._refuse_in_emergency(command)
+
+    def _refuse_in_emergency(self, command: str) -> None:
+        if command == "reset" and self.overlay.value("emergency_stop"):
+            raise self._refusal(command, EMERGENCY_HOLDS, "the emergency stop holds; release it first")
+
+    def _refusal(self, command: str, number: int, reason: str) -> CncError:
+        return CncError(number, reason, "nothing was changed", where=f"{self.kind} {self.name}: {command} refused")
+
+    def _do_overlay(
+        self,
+        command: Command,
+        cycle: int,
+        *,
+        control_unit: str,
+        enabled: bool,
+        value: float | None = None,
+        holder: str = "",
+    ) -> Command:
+        """The PLC serves a control unit with a value, or gives it back; an edge with the value 1 is carried out."""
+        if control_unit not in self.overlay:
+            known = ", ".join(self.overlay.names)
+            near = nearest_name(control_unit, self.overlay.names)
+            reason = f"unknown control unit '{control_unit}'{near}; known are: {known}"
+            raise self._refusal("overlay", BAD_ARGUMENT, reason)
+        unit = self.overlay[control_unit]
+        if enabled:
+            value = self._checked(unit, value)
+        if unit.edge:
+            return self._edge(unit, command, cycle, enabled=enabled, rises=bool(enabled and value), holder=holder)
+        before = self.overlay.arguments(unit.command)
+        kept = self.overlay.serve(unit.name, value or 0.0, holder) if enabled else self.overlay.give_back(unit.name)
+        if self.overlay.arguments(unit.command) != before:
+            try:
+                self._warning = self.carry_out(unit.command, cycle) or ""
+            except CncError:
+                self.overlay.restore(unit.name, kept)
+                raise
+        return command
+
+    def _checked(self, unit: ControlUnit, value: float | None) -> float:
+        """The value that the PLC commands. Raises 22001, and what the unit refuses it with."""
+        if value is None:
+            raise self._refusal("overlay", BAD_ARGUMENT, "argument 'value' is missing")
+        if unit.value == PERCENT:
+            self.check_override("overlay", value)
+        elif not (0.0 <= value <= unit.largest and value == value // 1.0):
+            whole = f"value = {value:g} of {unit.name} is not a whole number within 0 ... {unit.largest:g}"
+            raise self._refusal("overlay", BAD_ARGUMENT, whole)
+        return value
+
+    def _edge(
+        self, unit: ControlUnit, command: Command, cycle: int, *, enabled: bool, rises: bool, holder: str
+    ) -> Command:
+        if rises:
+            self._refuse_in_emergency(unit.command)
+            self._note(self.handler(unit.command)(cycle))
+            self.overlay.carried_out(unit.name)
+            command = Command(self.name, unit.command)
+        if enabled:
+            self.overlay.serve(unit.name, 0.0, holder)
+        else:
+            self.overlay.give_back(unit.name)
+        return command
 
     @property
     def master(self) -> str | None:
@@ -145,3 +276,7 @@ class Unit(ABC):
 
     def __repr__(self) -> str:
         return f"<{self.kind} {self.name}>"
+
+
+def any_override(command: str, percent: float) -> None:
+    """A unit without an override refuses none."""

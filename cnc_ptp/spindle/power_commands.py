@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
+from cnc_ptp.protocol.unit import EMERGENCY_STOP
 from cnc_ptp.spindle import transitions as T
 from cnc_ptp.spindle.faults import ENABLE_REMOVED, STILL_TURNING
 from cnc_ptp.spindle.spindle import Spindle
@@ -44,6 +45,14 @@ class PowerCommands:
             spindle.exact_stop.forget()
             if spindle.loop.measures_position:
                 spindle.place(cycle, spindle.loop.position)
+
+    def do_set_emergency_stop(self, cycle: int, *, enabled: bool) -> None:
+        """The emergency stop of the machine or of the HLI: down to speed 0, ErrorStop.
+
+        When it is released nothing turns: the spindle wants a reset.
+        """
+        if enabled and self._spindle.state != S.ERROR_STOP:
+            self._spindle.fault(cycle, EMERGENCY_STOP, "emergency stop")
 
     def do_reset(self, cycle: int) -> None:
         """Leaves ErrorStop at standstill (24004 while turning); otherwise stops the spindle in any state."""

@@ -86,13 +86,17 @@ class RotationCommands:
         else:
             spindle.stop(cycle)
 
+    def check_override(self, command: str, percent: float) -> None:
+        """Raises 24006 for an override that the spindle does not have."""
+        limit = self._spindle.parameters.max_override_percent
+        if not 0.0 <= percent <= limit:
+            reason = f"percent = {percent} is not within 0 ... {limit:g} (P-AXIS-00109)"
+            self._spindle.refuse(command, BAD_OVERRIDE, reason, percent=percent, limit=limit)
+
     def do_set_override(self, cycle: int, *, percent: float) -> str | None:
         """Override of endless rotation and positioning, 0 … P-AXIS-00109 %; the speed stays within the limits."""
         spindle = self._spindle
-        limit = spindle.parameters.max_override_percent
-        if not 0.0 <= percent <= limit:
-            reason = f"percent = {percent} is not within 0 ... {limit:g} (P-AXIS-00109)"
-            spindle.refuse("set_override", BAD_OVERRIDE, reason, percent=percent, limit=limit)
+        self.check_override("set_override", percent)
         if percent == spindle.override_percent:
             return None
         spindle.override_percent = float(percent)
@@ -104,6 +108,13 @@ class RotationCommands:
             return None
         self._spindle.override_suppressed = enabled
         return self._override_changed(cycle, f"override suppression {'on' if enabled else 'off'}")
+
+    def do_feed_hold(self, cycle: int, *, enabled: bool) -> str | None:
+        """HLI: down to speed 0 on the ramp, and on again when the hold is off; G167 does not suppress it."""
+        if enabled == self._spindle.feed_held:
+            return None
+        self._spindle.feed_held = enabled
+        return self._override_changed(cycle, f"feed hold {'on' if enabled else 'off'}")
 
     def _override_changed(self, cycle: int, what: str) -> str | None:
         spindle = self._spindle

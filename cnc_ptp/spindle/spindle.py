@@ -70,6 +70,7 @@ class Spindle:
         """The control limit was exceeded since the last homing: M05 homes before it stops."""
         self.override_percent = min(100.0, parameters.max_override_percent)
         self.override_suppressed = False
+        self.feed_held = False
         self.programmed_speed = 0.0
         """As commanded, °/s: with sign in endless rotation, without in positioning."""
         self.wanted_speed = 0.0
@@ -173,6 +174,8 @@ class Spindle:
 
     @property
     def override(self) -> float:
+        if self.feed_held:
+            return 0.0
         return 1.0 if self.override_suppressed else self.override_percent / 100.0
 
     def take(self, transition: Transition) -> None:

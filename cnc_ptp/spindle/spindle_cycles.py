@@ -31,6 +31,7 @@ SETTLED = (S.STANDSTILL, S.CONTINUOUS_MOTION, S.DISABLED, S.ERROR_STOP)
     JOB_ERROR,
     ORDERS_WAIT,
     ON_PATH,
+    FEED_HOLD,
 ) = map(int, SpindleBit)
 """As plain numbers: operations on members of an IntEnum take microseconds."""
 
@@ -176,6 +177,8 @@ class SpindleCycles:
             bits |= ORDERS_WAIT
         if spindle.travel is not None:
             bits |= ON_PATH
+        if spindle.feed_held:
+            bits |= FEED_HOLD
         return bits
 
     def _note_settled(self, cycle: int) -> None:

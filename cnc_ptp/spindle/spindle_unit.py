@@ -75,6 +75,10 @@ class SpindleUnit(Unit):
             self._path,
             FeedforwardCommands(self.spindle.loop, f"spindle {parameters.name}"),
         )
+        self.check_override = self._rotation.check_override
+        self.overlay.full_override = min(100.0, parameters.max_override_percent)
+        self.overlay.begin("override", self.spindle.override_percent)
+        self.overlay.begin("controller_enable", float(parameters.powered_at_start))
         self._cycles = SpindleCycles(self.spindle, procedures, self._queue, self._rotation)
         self.next_number = 1
         """Number of the next motion command."""
@@ -187,7 +191,7 @@ class SpindleUnit(Unit):
             if command.source != self._queue.source:
                 self._report_overtaken(cycle, "stop")
         before, turned = work.procedure, self.spindle.state == S.CONTINUOUS_MOTION
-        message = self._group_handler(command.name)(cycle, **command.arguments)
+        answer = self._group_handler(command.name)(cycle, **command.arguments)
         if work.procedure is not None and work.procedure is not before:
             work.procedure.number = command.number
         if command.job:
@@ -200,7 +204,7 @@ class SpindleUnit(Unit):
         if command.name in PASSED_ON:
             source = {"source": command.source} if command.source else {}
             self._passed_on.append(Command(self.name, command.name, {**command.arguments, **source}))
-        return message
+        return answer if isinstance(answer, str) else None
 
     def _report_overtaken(self, cycle: int, by: str) -> None:
         """Notifies the source of the gear change that the rotation does not resume afterwards."""

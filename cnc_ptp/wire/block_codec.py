@@ -18,6 +18,7 @@ from cnc_ptp.protocol.blocks import (
     ChannelOffsets,
     Command,
     CommandAnswer,
+    ControlUnitState,
     CycleBlock,
     HandshakeRequest,
     JobEvent,
@@ -34,17 +35,23 @@ HEAD = struct.Struct("<4xiIIx3xQI")
 """Encapsulation, stamp, length of the empty frame_id, first cycle, count: the start of every block."""
 FORMS_KEPT = 1000
 
+
+def _tells_plc(block: Any) -> bool:
+    """It carries what only the PLC reads."""
+    return bool(block.answers or block.job_events or block.control_units)
+
+
 _SHAPES: dict[type, Callable[[Any], Hashable]] = {
     PlcBlock: lambda block: None if block.commands else True,
-    AxisBlock: lambda block: None if block.answers or block.job_events else (block.count, block.master),
+    AxisBlock: lambda block: None if _tells_plc(block) else (block.count, block.master),
     SpindleBlock: lambda block: (
         None
-        if block.commands or block.refused or block.answers or block.job_events
+        if block.commands or block.refused or _tells_plc(block)
         else (block.count, block.master, block.master_wanted, block.source)
     ),
     ChannelBlock: lambda block: (
         None
-        if block.commands or block.requests or block.offsets or block.answers or block.job_events
+        if block.commands or block.requests or block.offsets or _tells_plc(block)
         else (
             block.count,
             *block.axes,
@@ -62,9 +69,8 @@ _NESTED: dict[str, Callable[[Any], Any]] = {
     "commands": lambda sent: Command(sent.target, sent.command, json.loads(sent.arguments_json), sent.id),
     "refused": lambda text: Refusal.decode(text),
     "job_events": lambda sent: JobEvent(sent.job, sent.status, sent.cycle, sent.error_id),
-    "answers": lambda sent: CommandAnswer(
-        sent.id, sent.error_id, sent.job, sent.message, sent.values_json
-    ),
+    "answers": lambda sent: CommandAnswer(sent.id, sent.error_id, sent.job, sent.message, sent.values_json),
+    "control_units": lambda sent: ControlUnitState(sent.name, sent.held, sent.request, sent.state, sent.holder),
     "offsets": lambda sent: channel_offsets(sent),
     "requests": lambda sent: HandshakeRequest(
         **{name: getattr(sent, name) for name in HandshakeRequest.__dataclass_fields__}

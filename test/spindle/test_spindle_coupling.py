@@ -315,7 +315,7 @@ def test_a_chain_is_not_granted_at_either_end() -> None:
 
 
 def test_a_master_that_sends_nothing_is_not_granted() -> None:
-    answers = spindle_answers({"t": spindle_block("t", "s")}, changes_gears=True)
+    answers = spindle_answers({"t": spindle_block("t", "s")}, changes_gears_of=("t",))
     assert [answer.arguments for answer in answers] == [
         {"granted": False, "reason": "nothing is published by spindle s"}
     ]

@@ -35,7 +35,9 @@ def commanded_drive(control: ControlParameters, interface: str, cycle_time: floa
     velocity controller, and there is none.
     """
     plant, takes_torque = control.plant, interface == "torque"
-    drive: Drive = TorqueCommandedDrive(plant, cycle_time=cycle_time) if takes_torque else velocity_drive(plant, cycle_time)
+    drive: Drive = (
+        TorqueCommandedDrive(plant, cycle_time=cycle_time) if takes_torque else velocity_drive(plant, cycle_time)
+    )
     if control.sercos is not None:
         drive = SercosDrive(control.sercos, plant, drive, cycle_time=cycle_time, own_motion=not takes_torque)
     if interface == "position":

@@ -7,8 +7,8 @@ from collections.abc import Callable
 
 from cnc_ptp import msg
 from cnc_ptp.machine.silence import Silence
-from cnc_ptp.nodes.bridge.sequence import is_newer
 from cnc_ptp.nodes.topics import jog_topic
+from cnc_ptp.plc.sequence import is_newer
 
 JOG_SILENT = 26134
 SECOND_JOG = 26144
