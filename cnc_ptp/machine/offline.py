@@ -44,6 +44,11 @@ class OfflineMachine:
         self._stuck_limit = round(STUCK_TIME * 1e6 / machine.cycle_time_us)
         self._stuck_cycles = 0
 
+    @property
+    def next_cycle(self) -> int:
+        """First cycle of the next block."""
+        return self._first_cycle
+
     def runner(self, name: str) -> UnitRunner:
         """The unit `name`, for commands between blocks."""
         return self._runners[name]
@@ -104,21 +109,29 @@ class OfflineMachine:
                     return
                 self._watch_progress(plc, outputs)
 
+    def stop(self) -> None:
+        """Everything stops on its ramps; the PLC ends the run when all is at a standstill."""
+        self._runners[PLC].command(Command(PLC, "stop_all", {}))
+
     def _watch_progress(self, plc: PlcBlock, outputs: Outputs) -> None:
-        reason = self._what_is_waited_for(outputs) if plc.scenario_done and not plc.commands else ""
+        waits = self.waits(outputs) if plc.scenario_done and not plc.commands else None
+        reason = "; ".join(waits or ())
         self._stuck_cycles = self._stuck_cycles + plc.count if reason else 0
         if self._stuck_cycles >= self._stuck_limit:
             self._stuck_cycles = 0
             text = f"{reason}, but the scenario is finished"
             self._runners[PLC].command(Command(PLC, "abort", {"reason": text}))
 
-    def _what_is_waited_for(self, outputs: Outputs) -> str:
-        """Why the run cannot continue; empty while anything moves. Channel or master answer for their axes."""
+    def waits(self, outputs: Outputs) -> list[str] | None:
+        """What the units wait for, nothing for those at rest; None while anything moves.
+
+        Channel or master answer for their axes.
+        """
         reasons = []
         for output in outputs.values():
             unit = self._runners[output.name].unit
             if reason := unit.waits_for():
                 reasons.append(reason)
             elif not unit.led and not at_rest(output.block):
-                return ""
-        return "; ".join(reasons)
+                return None
+        return reasons

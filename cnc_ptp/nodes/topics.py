@@ -78,6 +78,7 @@ SERVICES: dict[str, dict[str, Any]] = {
         "set_cyclic_factor": srv.SetCouplingFactor,
         "decouple": srv.Decouple,
         "set_feedforward": srv.SetFeedforward,
+        "reset_feedforward": srv.Execute,
         "set_friction_compensation": srv.SetSwitch,
     },
     "spindle": {
@@ -98,6 +99,7 @@ SERVICES: dict[str, dict[str, Any]] = {
         "decouple": srv.Execute,
         "reset": srv.Execute,
         "set_feedforward": srv.SetFeedforward,
+        "reset_feedforward": srv.Execute,
     },
     "channel": {
         "load": srv.LoadProgram,
@@ -109,6 +111,7 @@ SERVICES: dict[str, dict[str, Any]] = {
         "block_skip": srv.SkipBlocks,
         "reset": srv.Execute,
         "mdi": srv.ManualDataInput,
+        "acknowledge": srv.Acknowledge,
         "measuring_event": srv.Execute,
         "set_zero_offset": srv.SetZeroOffset,
         "teach_zero_offset": srv.TeachZeroOffset,
@@ -132,6 +135,9 @@ COUPLING_SERVICES: dict[str, Any] = {
     "change_cam": srv.ChangeCam,
 }
 """Services of the axes that the plc_bridge answers: it sees all axes, and reads the tables."""
+
+SERIES_SERVICES: dict[str, Any] = {"external_setpoints": srv.GiveExternalSetpoints}
+"""Services of the axes by which the plc_bridge takes series of setpoints."""
 
 OVERRIDE_INPUT = {"override": msg.Override}
 PLC_TOPICS: dict[str, dict[str, Any]] = {

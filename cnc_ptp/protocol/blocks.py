@@ -77,14 +77,25 @@ class CommandRecord:
     message: str
     id: int = 0
     values: Mapping[str, Value] = field(default_factory=dict, compare=False)
-    """Values of the refusal's text, in the unit that has refused; messages do not hold them."""
+    """Values of the refusal's text by name."""
     job: int = field(default=0, compare=False)
-    """Number of the job that it has begun (protocol/jobs.py), 0 if none; messages do not hold it."""
+    """Number of the job that it has begun (protocol/jobs.py), 0 if none."""
 
     @property
     def arguments_json(self) -> str:
         """The arguments as JSON."""
         return self.arguments if isinstance(self.arguments, str) else json_of(self.arguments)
+
+    @property
+    def values_json(self) -> str:
+        """The values as JSON; empty without any."""
+        return json_of(self.values) if self.values else ""
+
+
+def read_values(values_json: str) -> dict[str, Value]:
+    """Of `CommandRecord.values_json`."""
+    values: dict[str, Value] = json.loads(values_json) if values_json else {}
+    return values
 
 
 class EventValue(NamedTuple):
