@@ -13,11 +13,11 @@ from pathlib import Path
 
 from bench.figures import Effort, Figure, ShowProgress, Stopwatch, stopwatch
 from bench.jobs import BRACKET, MACHINE, OVERRIDES, ROOT, long_program
-from cnc_ptp.commands.run.simulate import write
 from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.run_entries import read_entries, read_file
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import read_machine
+from cnc_ptp.recording.offline_run import write
 from cnc_ptp.recording.writer import Recording
 
 LONG = 600.0

@@ -13,12 +13,12 @@ import yaml
 
 from bench.figures import Effort, Figure, ShowProgress, stopwatch
 from bench.jobs import MACHINE
-from cnc_ptp.commands.run.simulate import write
 from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import Command
+from cnc_ptp.recording.offline_run import write
 from cnc_ptp.recording.writer import Recording
 
 CHANNELS = {"one": "x", "two": "z"}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import signal
 import sys
+import threading
 import time
 from collections.abc import Callable
 from types import FrameType, TracebackType
@@ -68,3 +69,29 @@ class EndRequest:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.restore()
+
+
+class HeldSignals:
+    """Holds SIGINT and SIGTERM back for a `with` block, in the main thread, and lets them act at its end."""
+
+    def __init__(self) -> None:
+        self.given: list[int] = []
+
+    def __enter__(self) -> HeldSignals:
+        main = threading.current_thread() is threading.main_thread()
+        self._before = {number: signal.signal(number, self._hold) for number in HELD} if main else {}
+        return self
+
+    def _hold(self, number: int, frame: FrameType | None) -> None:
+        self.given.append(number)
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        for number, handler in self._before.items():
+            signal.signal(number, handler)
+        for number in self.given:
+            signal.raise_signal(number)
+
+
+HELD = (signal.SIGINT, signal.SIGTERM)

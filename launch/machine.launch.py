@@ -49,13 +49,13 @@ def start(context):
 
 def separate_nodes(given, switches, namespace):
     """The end of the clock ends the launch; the recorder, signalled to end, first takes the last messages."""
-    from cnc_ptp.commands.output_file import check_recording
     from cnc_ptp.machine.plc_file import check_plc
     from cnc_ptp.machine.run_entries import read_entries
     from cnc_ptp.machine.runner import CLOCK
     from cnc_ptp.nodes.supervisor import RunOptions, command_lines
     from cnc_ptp.nodes.topics import RECORDER
     from cnc_ptp.parameters import read_machine
+    from cnc_ptp.recording.overwriting import check_recording
 
     duration = float(given.pop("duration")) if "duration" in given else None
     rate = float(given.pop("state_rate")) if "state_rate" in given else None

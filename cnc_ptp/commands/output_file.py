@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 
 from rich.console import Console
 
 from cnc_ptp.commissioning.faults import BAD_OUTPUT
 from cnc_ptp.errors import CncError
-from cnc_ptp.parameters import machine_files
-
-OVERWRITES = 26117
-MACHINE_FILE = "machine_file"
-"""The input whose own files must not be overwritten either."""
+from cnc_ptp.recording.overwriting import overwritten
 
 
 def check_output(output: str | None, **inputs: str | None) -> None:
@@ -22,32 +17,8 @@ def check_output(output: str | None, **inputs: str | None) -> None:
         return
     if not Path(output).absolute().parent.is_dir():
         raise CncError(BAD_OUTPUT, f"{output} cannot be written: its folder does not exist", "nothing was started")
-    if what := _overwritten(output, inputs):
+    if what := overwritten(output, inputs):
         raise CncError(BAD_OUTPUT, f"{output} would overwrite the {what}", "nothing was started")
-
-
-def check_recording(record: str | None, **inputs: str | None) -> None:
-    """Raises CncError 26117 when the recording of a run is one of its inputs, as check_output."""
-    if record is not None and Path(record).exists() and (what := _overwritten(record, inputs)):
-        raise CncError(OVERWRITES, f"recording {record} would overwrite the {what}", "nothing was started")
-
-
-def _overwritten(output: str, inputs: Mapping[str, str | None]) -> str:
-    """The input that is the same file as `output`, `machine file mill.yaml`; empty if none is."""
-    for what, path in inputs.items():
-        if path is None:
-            continue
-        if _same(Path(output), Path(path)):
-            return f"{what.replace('_', ' ')} {path}"
-        for named in machine_files(path) if what == MACHINE_FILE else ():
-            if _same(Path(output), named):
-                return f"file {named} of the machine file {path}"
-    return ""
-
-
-def _same(one: Path, other: Path) -> bool:
-    """Whether both are one file, or would be: links of either kind count, and files that do not exist yet."""
-    return one.resolve() == other.resolve() or (one.exists() and other.exists() and one.samefile(other))
 
 
 def check_page(output: str, **inputs: str | None) -> None:

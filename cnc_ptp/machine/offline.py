@@ -46,6 +46,11 @@ class OfflineMachine:
         self._cycle_time = machine.cycle_time_us * 1e-6
         self._stuck_cycles = 0
 
+    @property
+    def next_cycle(self) -> int:
+        """First cycle of the next block."""
+        return self._first_cycle
+
     def runner(self, name: str) -> UnitRunner:
         """The unit `name`, for commands between blocks."""
         return self._runners[name]
@@ -106,21 +111,27 @@ class OfflineMachine:
                     return
                 self._watch_progress(plc, outputs)
 
+    def stop(self) -> None:
+        """Everything stops on its ramps; the PLC ends the run when all is at a standstill."""
+        self._runners[PLC].command(Command(PLC, "stop_all", {}))
+
     def _watch_progress(self, plc: PlcBlock, outputs: Outputs) -> None:
         unit = self._runners[PLC].unit
         with_program = isinstance(unit, PlcUnit) and unit.program_runs
-        commands_nothing = plc.scenario_done and not plc.commands
-        reason = self._what_is_waited_for(outputs, with_program) if commands_nothing else ""
+        waits = self.waits(outputs) if plc.scenario_done and not plc.commands else None
+        if with_program and waits == []:
+            waits = ["everything is at a standstill"]  # the PLC in a file has not said that the run may end
+        reason = "; ".join(waits or ())
         self._stuck_cycles = self._stuck_cycles + plc.count if reason else 0
         if self._stuck_cycles >= round((PLC_TIME if with_program else STUCK_TIME) / self._cycle_time):
             self._stuck_cycles = 0
             but = f"the PLC has commanded nothing for {PLC_TIME:g} s" if with_program else "the scenario is finished"
             self._runners[PLC].command(Command(PLC, "abort", {"reason": f"{reason}, but {but}"}))
 
-    def _what_is_waited_for(self, outputs: Outputs, with_program: bool) -> str:
-        """Why the run cannot continue; empty while anything moves. Channel or master answer for their axes.
+    def waits(self, outputs: Outputs) -> list[str] | None:
+        """What the units wait for, nothing for those at rest; None while anything moves.
 
-        `with_program`: a PLC in a file has not said that the run may end.
+        Channel or master answer for their axes.
         """
         reasons = []
         for output in outputs.values():
@@ -128,5 +139,5 @@ class OfflineMachine:
             if reason := unit.waits_for():
                 reasons.append(reason)
             elif not unit.led and not at_rest(output.block):
-                return ""
-        return "; ".join(reasons) or ("everything is at a standstill" if with_program else "")
+                return None
+        return reasons

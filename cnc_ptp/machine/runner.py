@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from cnc_ptp.errors import CncError
 from cnc_ptp.machine.silence import Silence
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
 from cnc_ptp.protocol.blocks import (
@@ -37,6 +38,17 @@ class UnitRunner:
     def command(self, command: Command) -> CommandRecord:
         """A command from a service or a watchdog; acts at the first cycle of the next block."""
         return self.unit.command(command, self.next_cycle)
+
+    def refuse(self, command: Command, error: CncError) -> CommandRecord:
+        """The record of a command that does not reach the unit, for the reason of `error`; recorded like all others."""
+        unit, cycle = self.unit, self.next_cycle
+        text = f"{unit.kind} {unit.name}: {command.command} refused: {error.reason}; nothing was changed"
+        record = CommandRecord(
+            cycle, unit.name, command.command, command.arguments_json, False, error.number, text, values=error.values
+        )
+        unit.records.append(record)
+        unit.event(cycle, Severity.WARNING, error.number, text)
+        return record
 
     def run(self, tick: CycleTick, inputs: Mapping[str, CycleBlock]) -> CycleBlock:
         """Applies the commands that `inputs` carry to this unit, then computes the block."""

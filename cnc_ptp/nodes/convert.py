@@ -7,7 +7,7 @@ from typing import Any
 from builtin_interfaces.msg import Time
 
 from cnc_ptp import msg
-from cnc_ptp.protocol.blocks import ChannelOffsets, CommandRecord, Event, EventValue, HandshakeRequest
+from cnc_ptp.protocol.blocks import ChannelOffsets, CommandRecord, Event, EventValue, HandshakeRequest, read_values
 
 
 def record_to_message(record: CommandRecord, stamp: Time) -> msg.CommandRecord:
@@ -31,7 +31,8 @@ def event_to_message(event: Event, stamp: Time) -> msg.Event:
 
 def message_to_record(message: msg.CommandRecord) -> CommandRecord:
     fields = {name: getattr(message, name) for name in _names(msg.CommandRecord)}
-    return CommandRecord(arguments=fields.pop("arguments_json"), **fields)
+    values = read_values(fields.pop("values_json"))
+    return CommandRecord(arguments=fields.pop("arguments_json"), values=values, **fields)
 
 
 def message_to_event(message: msg.Event) -> Event:

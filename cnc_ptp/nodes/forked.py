@@ -122,8 +122,13 @@ def end_with_supervisor() -> None:
     """SIGTERM comes when the process that has started this one ends, however: its end of a pipe is closed then."""
     parent = parent_process()
     assert parent is not None
-    fcntl.fcntl(parent.sentinel, fcntl.F_SETOWN, os.getpid())
-    fcntl.fcntl(parent.sentinel, fcntl.F_SETSIG, signal.SIGTERM)
-    fcntl.fcntl(parent.sentinel, fcntl.F_SETFL, fcntl.fcntl(parent.sentinel, fcntl.F_GETFL) | os.O_ASYNC)
+    end_with(parent.sentinel)
     if not parent.is_alive():  # before the signal was ordered
         sys.exit(128 + signal.SIGTERM)
+
+
+def end_with(pipe: int) -> None:
+    """SIGTERM comes when something can be read from a pipe, or its other end is closed."""
+    fcntl.fcntl(pipe, fcntl.F_SETOWN, os.getpid())
+    fcntl.fcntl(pipe, fcntl.F_SETSIG, signal.SIGTERM)
+    fcntl.fcntl(pipe, fcntl.F_SETFL, fcntl.fcntl(pipe, fcntl.F_GETFL) | os.O_ASYNC)

@@ -10,6 +10,7 @@ import click
 from cnc_ptp import action, msg
 from cnc_ptp.channel.channel_unit import ChannelUnit
 from cnc_ptp.errors import CncError
+from cnc_ptp.machine.command_files import with_program
 from cnc_ptp.machine.program_files import read_program
 from cnc_ptp.machine.run_entries import add_manual_files, load_arguments, program_search
 from cnc_ptp.machine.wiring import build_unit
@@ -76,21 +77,17 @@ class ChannelNode(UnitNode):
 
     def command(self, command: Command) -> CommandRecord:
         """As UnitNode; a program is read here, so that the unit and each replay get its text."""
-        if command.command == "load" and "text" not in command.arguments:
-            path = command.arguments["program"]
-            try:
-                text, files = read_program(path, self._search)
-            except CncError as error:
-                return self.refuse(command, error.number, error.reason)
-            command = Command(
-                self.unit.name, "load", load_arguments(path, text, files, command.arguments.get("dialect"))
-            )
-        elif command.command == "mdi":
-            try:
-                add_manual_files([command], self._machine, self._loaded)
-            except CncError as error:
-                return self.refuse(command, error.number, error.reason)
+        try:
+            command = with_program(command, self._machine, self._loaded)
+        except CncError as error:
+            return self.refuse(command, error)
         return super().command(command)
+
+    def arguments(self, command: str, request: Any) -> dict[str, Any]:
+        """As UnitNode, with the programs that come with the request."""
+        names, texts = getattr(request, "file_names", ()), getattr(request, "file_texts", ())
+        files = {"files": dict(zip(names, texts, strict=False))} if names else {}
+        return super().arguments(command, request) | files
 
     @property
     def _loaded(self) -> dict[str, str]:

@@ -24,6 +24,7 @@ from cnc_ptp.nodes.bridge.jog_topics import PATIENCE as JOG_PATIENCE
 from cnc_ptp.nodes.bridge.jog_topics import JogTopics
 from cnc_ptp.nodes.bridge.joint_states import JointStates
 from cnc_ptp.nodes.bridge.plc_watch import PlcWatch
+from cnc_ptp.nodes.bridge.setpoint_services import SetpointServices
 from cnc_ptp.nodes.bridge.value_topics import ValueTopics
 from cnc_ptp.nodes.topics import LIFE_SIGN, PLC_INPUT, PLC_TOPICS, VALUE_TOPICS, plc_quality, plc_topic
 from cnc_ptp.nodes.unit.unit_node import UnitNode
@@ -97,6 +98,7 @@ class PlcBridgeNode(UnitNode):
         self.create_subscription(msg.LifeSign, LIFE_SIGN, self._on_life_sign, PLC_INPUT)
         self.create_timer(self._life_sign_timeout / 4.0, self._watch_topics)
         self._answers = CouplingServices(self, self.plc, list(self._machine.axes))
+        SetpointServices(self, self.plc, self._machine.axes)
         self._joints = JointStates(self, self._machine)
 
     def _listen(self, unit: str, name: str) -> None:

@@ -13,12 +13,12 @@ from rclpy.type_support import check_for_type_support
 
 from cnc_ptp import msg
 from cnc_ptp.nodes import axis, clock, nc_channel, plc_bridge, recorder, spindle
-from cnc_ptp.nodes.topics import BLOCK_TYPES, COUPLING_SERVICES, PLC_TOPICS, SERVICES, STATE_TYPES
+from cnc_ptp.nodes.topics import BLOCK_TYPES, COUPLING_SERVICES, PLC_TOPICS, SERIES_SERVICES, SERVICES, STATE_TYPES
 
 MODULES = (axis, clock, nc_channel, plc_bridge, recorder, spindle)
 MESSAGES = {
     *(msg.CycleTick, msg.BlockReport, msg.Event, msg.CommandRecord, msg.LatenessHistogram, msg.HandshakeRequest),
-    *(*BLOCK_TYPES.values(), *STATE_TYPES.values(), *COUPLING_SERVICES.values()),
+    *(*BLOCK_TYPES.values(), *STATE_TYPES.values(), *COUPLING_SERVICES.values(), *SERIES_SERVICES.values()),
     *(message_type for group in (*PLC_TOPICS.values(), *SERVICES.values()) for message_type in group.values()),
 }
 

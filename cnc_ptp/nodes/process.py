@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import rclpy
+from rclpy.context import Context
 from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
 from rclpy.publisher import Publisher
@@ -75,21 +76,25 @@ def take_priority() -> None:
             os.sched_setscheduler(int(thread), os.SCHED_RR | os.SCHED_RESET_ON_FORK, os.sched_param(PRIORITY))
 
 
-def initialise() -> None:
-    """Starts ROS with the ROS arguments of the command; signals stay with the caller.
+def initialise(
+    context: Context | None = None, *, words: Sequence[str] | None = None, domain: int | None = None
+) -> None:
+    """Starts ROS; signals stay with the caller.
 
-    Raises CncError 26108 when it does not start.
+    `context`: None = the default one. `words`: ROS arguments, None = those of the command. `domain`: None =
+    ROS_DOMAIN_ID. Raises CncError 26108 when it does not start.
     """
     set_environment(os.environ, get_rmw_implementation_identifier())
+    words = ros_arguments().words if words is None else [*words]
     try:
-        rclpy.init(args=ros_arguments().words, signal_handler_options=SignalHandlerOptions.NO)
+        rclpy.init(args=words, context=context, domain_id=domain, signal_handler_options=SignalHandlerOptions.NO)
     except RuntimeError as error:
         reason, _, _place_in_its_source = str(error).partition(", at /")
         hints = "".join(f" ({text})" for part, text in ROS_HINTS.items() if part in reason)
         raise CncError(NO_ROS, f"ROS does not start: {reason}{hints}", "nothing was started") from None
-    domain = rclpy.get_default_context().get_domain_id()
+    domain = (context or rclpy.get_default_context()).get_domain_id()
     if domain > HIGHEST_DOMAIN:
-        rclpy.try_shutdown()
+        rclpy.try_shutdown(context=context)
         reason = f"ROS_DOMAIN_ID = {domain} is not within 0 ... {HIGHEST_DOMAIN}"
         raise CncError(NO_ROS, f"ROS does not start: {reason}", "nothing was started")
 

@@ -79,6 +79,7 @@ SERVICES: dict[str, dict[str, Any]] = {
         "set_cyclic_factor": srv.SetCouplingFactor,
         "decouple": srv.Decouple,
         "set_feedforward": srv.SetFeedforward,
+        "reset_feedforward": srv.Execute,
         "set_friction_compensation": srv.SetSwitch,
         "read_drive_parameter": srv.ReadDriveParameter,
         "write_drive_parameter": srv.WriteDriveParameter,
@@ -102,6 +103,7 @@ SERVICES: dict[str, dict[str, Any]] = {
         "decouple": srv.Execute,
         "reset": srv.Execute,
         "set_feedforward": srv.SetFeedforward,
+        "reset_feedforward": srv.Execute,
     },
     "channel": {
         "load": srv.LoadProgram,
@@ -113,6 +115,7 @@ SERVICES: dict[str, dict[str, Any]] = {
         "block_skip": srv.SkipBlocks,
         "reset": srv.Execute,
         "mdi": srv.ManualDataInput,
+        "acknowledge": srv.Acknowledge,
         "measuring_event": srv.Execute,
         "set_zero_offset": srv.SetZeroOffset,
         "teach_zero_offset": srv.TeachZeroOffset,
@@ -139,6 +142,9 @@ COUPLING_SERVICES: dict[str, Any] = {
     "change_cam": srv.ChangeCam,
 }
 """Services of the axes that the plc_bridge answers: it sees all axes, and reads the tables."""
+
+SERIES_SERVICES: dict[str, Any] = {"external_setpoints": srv.GiveExternalSetpoints}
+"""Services of the axes by which the plc_bridge takes series of setpoints."""
 
 VALUE_TOPICS: dict[str, Any] = {
     "override": msg.Override,

@@ -13,7 +13,7 @@ from cnc_ptp.plc.axis_groups import AxisGroups
 from cnc_ptp.plc.program.plc_io import PlcIo
 from cnc_ptp.plc.program.plc_program import PlcFile, PlcProgram
 from cnc_ptp.plc.scenario import Entry
-from cnc_ptp.plc.setpoint_file import placed
+from cnc_ptp.plc.setpoint_file import SetpointRow, check_setpoints, placed
 from cnc_ptp.plc.setpoint_queue import SetpointQueue
 from cnc_ptp.plc.spindle_answers import spindle_answers
 from cnc_ptp.protocol.axis_states import REST_STATES, AxisStateCode, StatusBit
@@ -131,6 +131,14 @@ class PlcUnit(Unit):
         """The channel that waits for this acknowledgement, None if none does."""
         request = self._pending.get(request_id)
         return None if request is None else request.channel
+
+    def give_setpoints(self, axis: str, rows: list[SetpointRow], cycle: int) -> None:
+        """External setpoints as a series; they count from `cycle`, that of the next block, if that is after the first.
+
+        Raises CncError 22001.
+        """
+        check_setpoints(axis, rows)
+        self.setpoints.add(axis, placed(rows, cycle))
 
     def withdraw(self, command: Command) -> bool:
         """Takes an `input` back; False when it has gone out with a block."""

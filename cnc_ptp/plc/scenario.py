@@ -10,11 +10,10 @@ from typing import Any
 import yaml
 
 from cnc_ptp import yaml_text
-from cnc_ptp.axis.external import read_setpoints
 from cnc_ptp.axis.external_commands import SETPOINTS
 from cnc_ptp.errors import CncError
 from cnc_ptp.plc.cam_file import parse_cam
-from cnc_ptp.plc.setpoint_file import parse_setpoints
+from cnc_ptp.plc.setpoint_file import check_setpoints, parse_setpoints
 from cnc_ptp.protocol.blocks import Command
 from cnc_ptp.protocol.commands import (
     BAD_ARGUMENT,
@@ -143,24 +142,15 @@ def _check_master(kinds: Mapping[str, str], slave: str, command: str, master: ob
 def _read_setpoints(axis: str, arguments: dict[str, Any], read: ReadFile | None) -> None:
     """The rows of a file of external setpoints; an entry may also have them itself, as `setpoints`."""
     if "setpoints" in arguments:
-        _check_setpoints(axis, arguments["setpoints"])
+        rows = arguments["setpoints"]
+        check_setpoints(axis, rows if isinstance(rows, list) else [])
         return
     file = arguments.get("file")
     if not isinstance(file, str):
-        raise _bad_setpoints(axis, "argument 'file' is missing")
+        where = f"axis {axis}: {SETPOINTS} refused"
+        raise CncError(BAD_ARGUMENT, "argument 'file' is missing", "nothing was changed", where=where)
     if read:
         arguments["setpoints"] = parse_setpoints(read("setpoint file", arguments.pop("file")), file)
-
-
-def _check_setpoints(axis: str, rows: object) -> None:
-    try:
-        read_setpoints(rows if isinstance(rows, list) else [])
-    except ValueError as error:
-        raise _bad_setpoints(axis, str(error)) from None
-
-
-def _bad_setpoints(axis: str, reason: str) -> CncError:
-    return CncError(BAD_ARGUMENT, reason, "nothing was changed", where=f"axis {axis}: {SETPOINTS} refused")
 
 
 def _construct(node: yaml.Node) -> dict[str, Any]:

@@ -6,9 +6,11 @@ from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
-from cnc_ptp.axis.external import Setpoint, read_setpoint
+from cnc_ptp.axis.external import Setpoint, read_setpoint, read_setpoints
+from cnc_ptp.axis.external_commands import SETPOINTS
 from cnc_ptp.errors import CncError
 from cnc_ptp.plc.csv_table import table_lines
+from cnc_ptp.protocol.commands import BAD_ARGUMENT
 
 BAD_SETPOINT_FILE = 25102
 COLUMNS = Setpoint._fields
@@ -47,6 +49,15 @@ def _row(values: Sequence[str]) -> SetpointRow:
 
 def _fault(file: str, line: int, reason: str) -> CncError:
     return CncError(BAD_SETPOINT_FILE, reason, "nothing was started", where=f"setpoint file {file}:{line}", line=line)
+
+
+def check_setpoints(axis: str, rows: Sequence[object]) -> None:
+    """Raises CncError 22001 for rows that are no series of setpoints."""
+    try:
+        read_setpoints(rows)
+    except ValueError as error:
+        where = f"axis {axis}: {SETPOINTS} refused"
+        raise CncError(BAD_ARGUMENT, str(error), "nothing was changed", where=where) from None
 
 
 def placed(rows: Sequence[SetpointRow], cycle: int) -> list[SetpointRow]:

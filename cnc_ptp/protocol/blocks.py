@@ -77,9 +77,9 @@ class CommandRecord:
     message: str
     id: int = 0
     values: Mapping[str, Value] = field(default_factory=dict, compare=False)
-    """Values of the refusal's text, or what the command was to find out, in the unit; messages do not hold them."""
+    """Values of the refusal's text, or what the command was to find out, by name."""
     job: int = field(default=0, compare=False)
-    """Number of the job that it has begun (protocol/jobs.py), 0 if none; messages do not hold it."""
+    """Number of the job that it has begun (protocol/jobs.py), 0 if none."""
 
     @property
     def arguments_json(self) -> str:

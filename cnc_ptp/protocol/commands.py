@@ -230,6 +230,10 @@ INTERNAL = frozenset(
 """Commands that only watchdogs, harnesses and other units give; a scenario may not."""
 READING = frozenset({"read_drive_parameter"})
 """Commands whose message is what was asked for, and no warning."""
+THROUGH_PLC = COUPLINGS | {"change_cam", "external_setpoints"}
+"""Commands of axes that go through the PLC: it sees all axes, and sends setpoints with the blocks of their cycles."""
+NEEDS_SOMETHING = {"set_limits": "reset_limits takes the limits away"}
+"""Commands that would release something when nothing is given, and how to do so explicitly."""
 OF_PLC = frozenset({"above", "master_stands", "master_lost"})
 """Arguments of couplings that the PLC fills in; only a refusal can come of them, so that they are not recorded."""
 OF_CHANNELS = frozenset({"own", "homes", "owner"})
@@ -311,6 +315,15 @@ def check_arguments(
                 _check_source(where, arguments[name], sources)
         elif argument.required:
             raise _bad(where, name, f"argument '{name}' is missing")
+
+
+def check_sendable(where: str, specification: Arguments, arguments: Mapping[str, Any]) -> None:
+    """A service takes a 0 that makes no sense for left out, and texts of UTF-8 only. Raises CncError 22001."""
+    for name, value in arguments.items():
+        if specification[name].positive and value == 0.0:
+            raise CncError(BAD_ARGUMENT, f"{name} = 0 must be greater than 0", "nothing was sent", where=where)
+        if isinstance(value, str) and value != value.encode(errors="ignore").decode():
+            raise CncError(BAD_ARGUMENT, f"{name} is no text in UTF-8", "nothing was sent", where=where)
 
 
 def _check_argument(where: str, name: str, argument: Argument, value: Any) -> None:

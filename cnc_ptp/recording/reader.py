@@ -14,7 +14,7 @@ from mcap.opcode import Opcode
 from mcap.records import Channel, Metadata, Schema
 from mcap_ros2.decoder import DecoderFactory
 
-from cnc_ptp.protocol.blocks import CommandRecord, Event, EventValue
+from cnc_ptp.protocol.blocks import CommandRecord, Event, EventValue, read_values
 from cnc_ptp.recording.bag import QOS
 from cnc_ptp.recording.mcap_chunks import McapRecords, MessageRun, RawRecord
 from cnc_ptp.recording.writer import MACHINE_FILE, METADATA, MISSING
@@ -314,6 +314,8 @@ class _Reader:
                 message.error_id,
                 message.message,
                 getattr(message, "id", 0),
+                read_values(getattr(message, "values_json", "")),
+                getattr(message, "job", 0),
             )
         )
 

@@ -6,7 +6,8 @@ import pytest
 
 from cnc_ptp.commands.client.command_words import read_arguments
 from cnc_ptp.errors import CncError
-from cnc_ptp.nodes.client.machine_client import arguments_of, request_of, services_of
+from cnc_ptp.nodes.client.machine_client import arguments_of, services_of
+from cnc_ptp.nodes.client.requests import request_of
 
 
 def read(kind, command, *words, unit="u"):

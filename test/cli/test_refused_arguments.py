@@ -8,11 +8,11 @@ import pytest
 from click.testing import CliRunner
 
 from cnc_ptp import cli
-from cnc_ptp.commands.run.simulate import write
 from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import Command
+from cnc_ptp.recording.offline_run import write
 from cnc_ptp.recording.reader import read_recording
 from cnc_ptp.recording.writer import Recording
 

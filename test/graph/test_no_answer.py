@@ -12,7 +12,8 @@ from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.nodes import player, process
 from cnc_ptp.nodes.bridge.coupling_services import PATIENCE as COUPLING_PATIENCE
 from cnc_ptp.nodes.client.latest_blocks import LatestBlocks
-from cnc_ptp.nodes.client.machine_client import PATIENCE, MachineClient, integer_range
+from cnc_ptp.nodes.client.machine_client import PATIENCE, MachineClient
+from cnc_ptp.nodes.client.requests import integer_range
 from cnc_ptp.nodes.topics import REMEMBERED_BLOCKS
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import CycleTick

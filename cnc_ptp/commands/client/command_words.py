@@ -9,7 +9,7 @@ from typing import Any
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.plc.scenario import SWITCH_WORDS
-from cnc_ptp.protocol.commands import BAD_ARGUMENT, Argument, Arguments, check_arguments, current_names
+from cnc_ptp.protocol.commands import BAD_ARGUMENT, Argument, Arguments, check_arguments, check_sendable, current_names
 
 SWITCHES = SWITCH_WORDS | {"true": True, "false": False}
 PATHS = ("file", "program")
@@ -31,17 +31,8 @@ def read_arguments(kind: str, unit: str, command: str, words: Sequence[str], kno
     texts = current_names(kind, command, texts)
     arguments = {name: _value(name, text, known[name]) if name in known else text for name, text in texts.items()}
     check_arguments(where, known, arguments)
-    for name, value in arguments.items():
-        _check_sendable(where, name, value, known[name])
+    check_sendable(where, known, arguments)
     return arguments
-
-
-def _check_sendable(where: str, name: str, value: Any, argument: Argument) -> None:
-    """A service takes a 0 that makes no sense for left out, and texts of UTF-8 only. Raises CncError 22001."""
-    if argument.positive and value == 0.0:
-        raise CncError(BAD_ARGUMENT, f"{name} = 0 must be greater than 0", "nothing was sent", where=where)
-    if isinstance(value, str) and value != value.encode(errors="ignore").decode():
-        raise CncError(BAD_ARGUMENT, f"{name} is no text in UTF-8", "nothing was sent", where=where)
 
 
 def _split(where: str, word: str, known: Arguments) -> tuple[str, str]:

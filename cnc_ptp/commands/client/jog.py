@@ -14,16 +14,15 @@ from cnc_ptp.commands.console import RUN_FAILED
 from cnc_ptp.interrupt import EndRequest
 from cnc_ptp.nodes.bridge.jog_topics import PATIENCE as SILENCE
 from cnc_ptp.nodes.bridge.jog_topics import free_run_text, second_client_text
+from cnc_ptp.nodes.client.jog_sender import PERIOD, JogSender
 from cnc_ptp.nodes.client.latest_blocks import GONE_TEXT
 from cnc_ptp.nodes.client.machine_client import PATIENCE, MachineClient, connected
 from cnc_ptp.nodes.process import take_priority
-from cnc_ptp.nodes.topics import COMMAND, EVENT, PLC_INPUT, jog_topic
+from cnc_ptp.nodes.topics import COMMAND, EVENT, PLC_INPUT
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
 from cnc_ptp.protocol.blocks import Severity
 from cnc_ptp.protocol.unit_view import UnitView
 
-PERIOD = 0.05
-"""Seconds between two messages."""
 JOGS = state_name(AxisStateCode.CONTINUOUS_MOTION)
 DELAY = 0.03
 """Seconds from a block of the axis to the effect of a message."""
@@ -57,9 +56,8 @@ class Jogger:
         self._client = client
         self._axis = axis
         self._velocity = velocity
-        self._sequence = 0
         self._blocks = client.look_at([axis])
-        self._publisher = client.create_publisher(msg.Jog, jog_topic(axis), PLC_INPUT)
+        self._sender = JogSender(client, axis)
         self._refused = self._stalled = self._ignored = False
         self._errors = Console(stderr=True, highlight=False, soft_wrap=True)
         client.create_subscription(msg.CommandRecord, COMMAND, self._on_command, PLC_INPUT)
@@ -69,7 +67,7 @@ class Jogger:
         """The PLC is subscribed, and the axis publishes its position."""
 
         def is_ready() -> bool:
-            return bool(self._publisher.get_subscription_count()) and self._blocks.view(self._axis) is not None
+            return self._sender.is_heard and self._blocks.view(self._axis) is not None
 
         return bool(self._client.spin_until(is_ready, PATIENCE))
 
@@ -85,7 +83,7 @@ class Jogger:
                 self.report(f"this command was suspended for more than {SILENCE:g} s; the jog has ended")
                 return
             sent = time.monotonic()
-            self._send(self._velocity)
+            self._sender.send(self._velocity)
             self._client.spin_until(ended, PERIOD if distance is None else PERIOD / 5.0)
             view = self._place()
             moved = moved or view.state == JOGS
@@ -99,7 +97,7 @@ class Jogger:
         if self._ignored:
             return self.report("the jog is ignored: another client jogs the axis, or the machine is in free run")
         cycle = self._place().cycle
-        self._send(0.0)
+        self._sender.send(0.0)
 
         def stands() -> bool:
             return self._place().cycle > cycle + 100 and not self._place().busy
@@ -121,14 +119,8 @@ class Jogger:
         assert view is not None
         return view
 
-    def _send(self, velocity: float) -> None:
-        self._sequence += 1
-        message = msg.Jog(sequence=self._sequence, valid=True, velocity=velocity)
-        message.header.frame_id = self._client.get_name()
-        self._publisher.publish(message)
-
     def _on_command(self, message: msg.CommandRecord) -> None:
-        if message.target == self._axis and message.command == JOG and self._sequence:
+        if message.target == self._axis and message.command == JOG and self._sender.has_begun:
             self._refused = self._refused or not message.accepted
             if message.message and message.accepted:
                 self._errors.print(f"warning: {message.message}", style="yellow", markup=False)
@@ -137,7 +129,7 @@ class Jogger:
         axis, client = self._axis, self._client.get_name()
         if message.text in (free_run_text(axis), second_client_text(axis, client)):
             self._ignored = self._refused = True
-        if message.source == self._axis and message.severity > Severity.INFO and self._sequence:
+        if message.source == self._axis and message.severity > Severity.INFO and self._sender.has_begun:
             self._errors.print(f"P-ERR-{message.error_id} {message.text}", style="yellow", markup=False)
 
 

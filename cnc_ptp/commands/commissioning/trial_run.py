@@ -5,7 +5,6 @@ from __future__ import annotations
 from array import array
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
-from contextlib import nullcontext
 from dataclasses import dataclass, field
 from types import TracebackType
 
@@ -15,16 +14,16 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from cnc_ptp.commands.console import print_faults
-from cnc_ptp.commands.run.simulate import Result, interrupted, write
+from cnc_ptp.commands.run.simulate import Result, interrupted
 from cnc_ptp.interrupt import EndRequest
-from cnc_ptp.machine.offline import OfflineMachine, Outputs
+from cnc_ptp.machine.offline import Outputs
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import ChannelBlock, ChannelOffsets, CommandRecord, Event, PlcBlock
 from cnc_ptp.protocol.notes import Note
 from cnc_ptp.protocol.unit import PLC
-from cnc_ptp.recording.writer import Recording
+from cnc_ptp.recording.offline_run import OfflineRun
 
 Columns = Mapping[str, npt.NDArray[np.float64]]
 
@@ -74,13 +73,12 @@ def run_trial(
     which `machine_text` is needed. Raises CncError 26007 to 26009 where it cannot be written.
     """
     units = build_units(machine, scenario=job)
-    offline = OfflineMachine(machine, units)
+    run = OfflineRun(machine, units, record=record, machine_text=machine_text)
     kept: dict[str, dict[str, array[float]]] = {unit: defaultdict(new_column) for unit in fields}
     trial = Trial()
-    recording = Recording(record, machine_text, 0, machine.cycle_time_us * 1000) if record else None
     cycles = round(seconds * 1e6 / machine.cycle_time_us)
-    with TrialProgress(label, cycles) as progress, recording or nullcontext(), EndRequest() as end:
-        for outputs in offline.run():
+    with TrialProgress(label, cycles) as progress, run, EndRequest() as end:
+        for outputs in run.run():
             trial.result.add(outputs)
             _keep(kept, fields, outputs)
             for unit, output in outputs.items():
@@ -89,9 +87,7 @@ def run_trial(
                 if isinstance(output.block, ChannelBlock):
                     trial.offsets += [(unit, offsets) for offsets in output.block.offsets]
             progress.show(outputs)
-            if recording is not None:
-                write(recording, outputs)
-            stopped = end.given and interrupted(offline, outputs, trial.result, end)
+            stopped = end.given and interrupted(run.machine, outputs, trial.result, end)
             if stopped or trial.result.errors or trial.refusals:
                 break
     trial.columns = {

@@ -7,7 +7,6 @@ from rich.console import Console
 from cnc_ptp import KERNEL
 from cnc_ptp.channel.program_report import cut_off_notes, time_lines
 from cnc_ptp.commands.console import RUN_FAILED, print_faults, print_missing_folders, print_note_of_idle_run
-from cnc_ptp.commands.output_file import check_recording
 from cnc_ptp.commands.run.progress import RunProgress
 from cnc_ptp.machine.plc_file import check_plc
 from cnc_ptp.machine.run_entries import read_entries
@@ -18,6 +17,7 @@ from cnc_ptp.nodes.monitor import RunMonitor
 from cnc_ptp.nodes.supervisor import RunOptions, Supervisor
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.recording.node_figures import BLOCKS, CAME_TWICE, LOST_BLOCKS, following_error
+from cnc_ptp.recording.overwriting import check_recording
 from cnc_ptp.recording.trigger import Condition
 
 

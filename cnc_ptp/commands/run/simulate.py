@@ -5,7 +5,6 @@ from __future__ import annotations
 import gc
 import time
 from collections import defaultdict
-from contextlib import nullcontext
 from dataclasses import dataclass, field
 from types import FrameType
 
@@ -20,7 +19,6 @@ from cnc_ptp.commands.console import (
     print_missing_folders,
     print_note_of_idle_run,
 )
-from cnc_ptp.commands.output_file import check_recording
 from cnc_ptp.commands.run.progress import RunProgress
 from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import EndRequest
@@ -32,18 +30,12 @@ from cnc_ptp.nc.block_search import StartPoint
 from cnc_ptp.parameters import MachineParameters, machine_text, read_machine
 from cnc_ptp.plc.plc_unit import error_of
 from cnc_ptp.plc.program.plc_program import PlcFile
-from cnc_ptp.protocol.blocks import (
-    AxisBlock,
-    ChannelBlock,
-    Command,
-    CycleTick,
-    PlcBlock,
-    Severity,
-)
+from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, PlcBlock, Severity
 from cnc_ptp.protocol.notes import Note, Notes, error_text
 from cnc_ptp.protocol.unit import PLC
-from cnc_ptp.recording.trigger import Condition, TriggeredRecording, make_recording
-from cnc_ptp.recording.writer import Recording
+from cnc_ptp.recording.offline_run import OfflineRun
+from cnc_ptp.recording.overwriting import check_recording
+from cnc_ptp.recording.trigger import Condition
 
 LONG_CYCLE = 1.0
 """Seconds after which an interrupt breaks off a cycle of a PLC in a file."""
@@ -100,32 +92,26 @@ def simulate(
     condition = None if record_when is None else Condition(record_when, unit_kinds(parameters))
     file = None if plc is None else read_plc(plc)
     units = build_units(parameters, scenario=job, end_when_idle=duration is None, plc_file=file)
-    offline = OfflineMachine(parameters, units)
+    run = OfflineRun(parameters, units, record=record, machine_text=machine_text(machine), condition=condition)
     cycles = None if duration is None else round(duration * 1e6 / parameters.cycle_time_us)
     result = Result()
     gc.freeze()  # what was loaded stays to the end: nothing to be searched for garbage
     started = time.monotonic()
-    recording = None
-    if record is not None:
-        cycle_time_ns = parameters.cycle_time_us * 1000
-        recording = make_recording(record, machine_text(machine), 0, cycle_time_ns, condition)
     try:
         endless = EndlessCycle(file)
-        with RunProgress() as progress, recording or nullcontext(), EndRequest(endless.break_in) as end:
-            for outputs in offline.run(cycles=cycles):
+        with RunProgress() as progress, run, EndRequest(endless.break_in) as end:
+            for outputs in run.run(cycles=cycles):
                 endless.ticked_at = time.monotonic()
                 result.add(outputs)
                 progress.show_block(outputs)
-                if recording is not None:
-                    write(recording, outputs)
-                if end.given and interrupted(offline, outputs, result, end):
+                if end.given and interrupted(run.machine, outputs, result, end):
                     break
     except CncError as error:  # of the recording: it can no longer be written
         print_error(error)
         result.failed = True
     print_summary(parameters, result, time.monotonic() - started, duration)
     print_note_of_idle_run(program, scenario, plc, duration)
-    print_note_of_trigger(recording)
+    print_note_of_trigger(run)
     return RUN_FAILED if result.failed or result.interrupted or (strict and result.refused) else 0
 
 
@@ -149,27 +135,15 @@ def interrupted(offline: OfflineMachine, outputs: Outputs, result: Result, end: 
     """Has everything stopped on its ramps after the first signal; True at standstill, or at the second signal."""
     if not result.interrupted:
         result.interrupted = end.text("everything stops on its ramps")
-        offline.runner(PLC).command(Command(PLC, "stop_all", {}))
+        offline.stop()
         return False
     plc = outputs[PLC].block
     return end.repeated or (isinstance(plc, PlcBlock) and plc.run_done)
 
 
-def write(recording: Recording, outputs: Outputs) -> None:
-    """Records the blocks, events and commands of all units for one tick."""
-    plc = outputs[PLC].block
-    recording.tick(CycleTick(plc.first_cycle, plc.count))
-    for name, output in outputs.items():
-        recording.block(name, output.block)
-        for event in output.events:
-            recording.event(event)
-        for record in output.records:
-            recording.command(record)
-
-
-def print_note_of_trigger(recording: Recording | None) -> None:
+def print_note_of_trigger(run: OfflineRun) -> None:
     """A recording that has not begun."""
-    if isinstance(recording, TriggeredRecording) and recording.begin is None:
+    if run.waits_for_trigger:
         text = "note: the condition of --record-when was never true; commands and events alone are recorded"
         Console(highlight=False, soft_wrap=True).print(text, style="yellow")
 

@@ -12,13 +12,12 @@ from rclpy.qos import QoSProfile, QoSReliabilityPolicy
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.program_files import read_file
+from cnc_ptp.machine.command_files import with_table
 from cnc_ptp.nodes.topics import COMMAND, COUPLING_SERVICES
 from cnc_ptp.nodes.unit.requests import RUN_OVER, given_arguments
 from cnc_ptp.nodes.unit.unit_node import UnitNode
-from cnc_ptp.plc.cam_file import parse_cam
 from cnc_ptp.plc.plc_unit import PlcUnit
-from cnc_ptp.protocol.blocks import Command
+from cnc_ptp.protocol.blocks import Command, json_of
 from cnc_ptp.protocol.commands import COMMANDS
 from cnc_ptp.protocol.unit import UPSTREAM_LOST
 
@@ -64,7 +63,7 @@ class CouplingServices:
         try:
             arguments = self._arguments(command, request)
         except CncError as error:
-            return answered(response, error.number, error.message)
+            return answered(response, error.number, error.message, json_of(error.values))
         if self._node.is_over:
             text = f"axis {axis}: {command} refused: the run has ended; nothing was changed"
             return answered(response, RUN_OVER, text)
@@ -78,10 +77,13 @@ class CouplingServices:
 
     def _arguments(self, command: str, request: Any) -> dict[str, Any]:
         arguments = given_arguments(COMMANDS["axis"][command], request)
-        if "table" in COMMANDS["axis"][command]:
-            file = arguments.pop("file", "")
-            arguments["table"] = parse_cam(read_file("cam file", file), file)
-        return arguments
+        if "table" not in COMMANDS["axis"][command]:
+            return arguments
+        if not len(request.master_points):
+            return with_table({"file": "", **arguments}, "table")
+        arguments.pop("file", None)
+        pairs = zip(request.master_points, request.slave_points, strict=False)
+        return {**arguments, "table": [[master, slave] for master, slave in pairs]}
 
     def _send(self, send: Callable[..., None], response: Any, header: Any) -> None:
         """In place of Service.send_response, which the executor calls after the callback."""
@@ -96,8 +98,8 @@ class CouplingServices:
         for call in self._open:
             asked = call.command
             if asked.id and (asked.id, asked.target, asked.command) == (record.id, record.target, record.command):
-                call.response.cycle = record.cycle
-                self._answer(call, record.error_id, record.message)
+                call.response.cycle, call.response.job = record.cycle, record.job
+                self._answer(call, record.error_id, record.message, record.values_json)
                 return
 
     def _watch(self) -> None:
@@ -120,13 +122,14 @@ class CouplingServices:
             what = f"axis {call.command.target}: {call.command.command}"
             self._answer(call, RUN_OVER, f"{what} without an answer: the run has ended")
 
-    def _answer(self, call: Call, error_id: int, message: str) -> None:
+    def _answer(self, call: Call, error_id: int, message: str, values_json: str = "") -> None:
         self._open.remove(call)
-        answered(call.response, error_id, message)
+        answered(call.response, error_id, message, values_json)
         call.send()
 
 
-def answered(response: Any, error_id: int, message: str) -> Any:
+def answered(response: Any, error_id: int, message: str, values_json: str = "") -> Any:
     """The response with its fields set; `error_id` 0 = accepted."""
     response.accepted, response.error_id, response.message = error_id == 0, error_id, message
+    response.values_json = values_json
     return response

@@ -3,25 +3,27 @@
 from __future__ import annotations
 
 import os
-import re
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from itertools import count
 from typing import Any
 
 import rclpy
 from rcl_interfaces.srv import GetParameters
 from rclpy.client import Client
+from rclpy.context import Context
 from rclpy.experimental import EventsExecutor
-from rclpy.node import Node
 
 from cnc_ptp.errors import CncError, nearest_name
 from cnc_ptp.machine.wiring import UNKNOWN_UNIT
 from cnc_ptp.nodes import process
 from cnc_ptp.nodes.bridge.coupling_services import PATIENCE as COUPLING_PATIENCE
 from cnc_ptp.nodes.client.latest_blocks import LatestBlocks
-from cnc_ptp.nodes.topics import COUPLING_SERVICES, SERVICES
-from cnc_ptp.protocol.commands import BAD_ARGUMENT, COMMANDS, INTERNAL, UNKNOWN_COMMAND, Arguments
+from cnc_ptp.nodes.client.requests import check_integers, request_of
+from cnc_ptp.nodes.polling_node import PollingNode
+from cnc_ptp.nodes.topics import COUPLING_SERVICES, SERIES_SERVICES, SERVICES
+from cnc_ptp.protocol.commands import COMMANDS, INTERNAL, UNKNOWN_COMMAND, Arguments
 from cnc_ptp.protocol.unit import PLC
 
 NO_MACHINE = 26135
@@ -31,18 +33,25 @@ PATIENCE = 5.0
 MARGIN = 1.0
 """Seconds that a call waits longer than the PLC does, which withdraws a coupling that no axis answers (26143)."""
 UNITS = {"channels": "channel", "axes": "axis", "spindles": "spindle"}
-INTEGER_FIELD = re.compile(r"(u?)int(\d+)")
+CYCLE_TIME = "cycle_time_us"
 AXIS_TYPE = "kenngr.achs_typ"
 ROTARY = ("ACHSTYP_ROTATOR", 2)
+NUMBERS = count(1)
+"""Of clients in contexts of their own, for their names."""
 
 
-class MachineClient(Node):
+class MachineClient(PollingNode):
     """Services used: /plc/get_parameters, /<axis>/get_parameters, /<unit>/<command>; all in its namespace."""
 
-    def __init__(self) -> None:
-        super().__init__(f"cnc_ptp_client_{os.getpid()}", enable_rosout=False, start_parameter_services=False)
-        self._executor_of_client = EventsExecutor()
+    def __init__(self, *, context: Context | None = None) -> None:
+        """`context`: of ROS, None = the default one."""
+        name = f"cnc_ptp_client_{os.getpid()}_{next(NUMBERS)}" if context else f"cnc_ptp_client_{os.getpid()}"
+        super().__init__(name, context=context, enable_rosout=False, start_parameter_services=False)
+        self._executor_of_client = EventsExecutor(context=context)
         self._executor_of_client.add_node(self)
+        self._askers: dict[tuple[str, str], Client[Any, Any]] = {}
+        self.cycle_time = 0.0
+        """Seconds; of a machine that was found."""
         self.kinds: dict[str, str] = {}
         """Unit -> kind, in the order of the machine."""
         self.rotary: set[str] = set()
@@ -57,6 +66,11 @@ class MachineClient(Node):
             self._executor_of_client.spin_once(timeout_sec=min(0.05, seconds))
         return True
 
+    def end(self) -> None:
+        """No message is delivered any more, and the node is gone."""
+        self._executor_of_client.shutdown()
+        self.destroy_node()
+
     def spin_for(self, seconds: float) -> None:
         self.spin_until(lambda: False, seconds)
 
@@ -64,14 +78,16 @@ class MachineClient(Node):
 
     def find_machine(self, patience: float = PATIENCE) -> None:
         """Learns the units from the PLC node. Raises CncError 26135 when there is none."""
-        answer = self._parameters_of(PLC, list(UNITS), patience)
+        answer = self._parameters_of(PLC, [*UNITS, CYCLE_TIME], patience)
         if answer is None:
             where = f"ROS domain {self.context.get_domain_id()}"
             where += "" if self.get_namespace() == "/" else f" in namespace {self.get_namespace()}"
             raise CncError(NO_MACHINE, f"no machine is running on {where}", "nothing was sent")
-        for kind, value in zip(UNITS.values(), answer, strict=True):
+        *units, cycle_time = answer
+        for kind, value in zip(UNITS.values(), units, strict=True):
             self.kinds |= dict.fromkeys(value.string_array_value, kind)
         self.kinds[PLC] = "plc"
+        self.cycle_time = cycle_time.integer_value * 1e-6
 
     def learn_axis_types(self, units: Iterable[str]) -> None:
         """The axes in degrees; an axis that does not answer is taken to be in mm."""
@@ -109,8 +125,9 @@ class MachineClient(Node):
         service = services_of(self.kinds[unit])[command]
         check_integers(f"{self.kinds[unit]} {unit}: {command} refused", service, arguments)
         patience = COUPLING_PATIENCE + MARGIN if command in COUPLING_SERVICES else PATIENCE
-        client: Client[Any, Any] = self.create_client(service, f"{unit}/{command}")
-        answer = self._answer(client, request_of(service, arguments), patience)
+        if (unit, command) not in self._askers:
+            self._askers[unit, command] = self.create_client(service, f"{unit}/{command}")
+        answer = self._answer(self._askers[unit, command], request_of(service, arguments), patience)
         if answer is None:
             text = f"{self.kinds[unit]} {unit}: {command}: no answer within {patience:g} s"
             raise CncError(NO_ANSWER, text, "whether it was carried out is not known, see `cnc_ptp status`")
@@ -141,7 +158,7 @@ def connected(*, patience: float = PATIENCE) -> Iterator[MachineClient]:
 
 def services_of(kind: str) -> dict[str, Any]:
     """Command -> service type."""
-    return SERVICES[kind] | (COUPLING_SERVICES if kind == "axis" else {})
+    return SERVICES[kind] | ({**COUPLING_SERVICES, **SERIES_SERVICES} if kind == "axis" else {})
 
 
 def arguments_of(kind: str, unit: str, command: str) -> Arguments:
@@ -158,28 +175,5 @@ def arguments_of(kind: str, unit: str, command: str) -> Arguments:
             text = f"unknown command '{command}'{nearest_name(command, known)}"
         raise CncError(UNKNOWN_COMMAND, text, f"nothing was sent. Known: {', '.join(known)}", where=where)
     fields = service.Request.get_fields_and_field_types()
-    return {name: argument for name, argument in COMMANDS[kind][command].items() if name in fields}
-
-
-def check_integers(where: str, service: Any, arguments: Mapping[str, Any]) -> None:
-    """Raises CncError 22001 for an integer that the field of the service does not hold: ROS would wrap it around."""
-    fields = service.Request.get_fields_and_field_types()
-    for name, value in arguments.items():
-        if found := INTEGER_FIELD.fullmatch(fields[name]):
-            low, high = integer_range(found[1] == "u", int(found[2]))
-            if not low <= value <= high:
-                reason = f"{name} = {value} is not within {low} … {high}"
-                raise CncError(BAD_ARGUMENT, reason, "nothing was sent", where=where)
-
-
-def integer_range(unsigned: bool, bits: int) -> tuple[int, int]:
-    return (0, 2**bits - 1) if unsigned else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)
-
-
-def request_of(service: Any, arguments: Mapping[str, Any]) -> Any:
-    """A request with these fields; what is left out keeps its default, and `has_<name>` says so."""
-    request = service.Request(**arguments)
-    for name in arguments:
-        if hasattr(request, f"has_{name}"):
-            setattr(request, f"has_{name}", True)
-    return request
+    known = COMMANDS[kind][command].items()
+    return {name: argument for name, argument in known if name in fields and argument.kind != "rows"}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from cnc_ptp.protocol.commands import Argument, Arguments
+from cnc_ptp.protocol.commands import NEEDS_SOMETHING, Argument, Arguments
 
 RUN_OVER = 26115
 NOT_GIVEN = 1e300
@@ -25,10 +25,6 @@ def given_arguments(known: Arguments, request: Any) -> dict[str, Any]:
     }
 
 
-NEEDS_SOMETHING = {"set_limits": "reset_limits takes the limits away"}
-"""Commands that would release something when nothing is given, and how to do so explicitly."""
-
-
 def objection(command: str, known: Arguments, request: Any) -> str:
     """Why a request cannot be meant so; empty if it can."""
     if command in NEEDS_SOMETHING and not given_arguments(known, request):
@@ -45,7 +41,7 @@ def contradiction(known: Arguments, request: Any) -> str:
         value = getattr(request, name)
         if says and _is_left_out(known[name], value):
             return f"has_{name} is true and {name} is not given"
-        if not says and not _is_left_out(known[name], value):
+        if not says and known[name].kind != "switch" and not _is_left_out(known[name], value):
             return f"{name} = {value} is given and has_{name} is false"
     return ""
 

@@ -288,18 +288,22 @@ class UnitNode(PollingNode):
     def _on_service(self, command: str, request: Any, response: Any) -> Any:
         asked = Command(self.unit.name, command, self.arguments(command, request))
         if reason := objection(command, COMMANDS[self.unit.kind][command], request):
-            record = self.refuse(asked, BAD_ARGUMENT, reason)
+            record = self.refuse(asked, CncError(BAD_ARGUMENT, reason))
         else:
             record = self.command(asked)
         response.accepted, response.error_id = record.accepted, record.error_id
-        response.message, response.cycle, response.job = record.message, record.cycle, record.job
-        if hasattr(response, "values_json"):
-            response.values_json = record.values_json
+        response.message, response.values_json = record.message, record.values_json
+        response.cycle, response.job = record.cycle, record.job
         self._compute_ready_blocks()  # an axis that is decoupled now no longer waits for its master
         return response
 
     def arguments(self, command: str, request: Any) -> dict[str, Any]:
         return given_arguments(COMMANDS[self.unit.kind][command], request)
+
+    @property
+    def next_cycle(self) -> int:
+        """The cycle at which a command would act now."""
+        return self._runner.next_cycle
 
     @property
     def is_over(self) -> bool:
@@ -309,19 +313,15 @@ class UnitNode(PollingNode):
     def command(self, command: Command) -> CommandRecord:
         """Carries out a command between two blocks: from a service, an action or the watchdog."""
         if self._gate.closed:
-            return self.refuse(command, RUN_OVER, "the run has ended")
+            return self.refuse(command, CncError(RUN_OVER, "the run has ended"))
         with self._working():
             record = self._runner.command(command)
         self._publish_records()
         return record
 
-    def refuse(self, command: Command, error_id: int, reason: str) -> CommandRecord:
+    def refuse(self, command: Command, error: CncError) -> CommandRecord:
         """The record of a command that does not reach the unit; it is published like all others."""
-        text = f"{self.unit.kind} {self.unit.name}: {command.command} refused: {reason}; nothing was changed"
-        cycle = self._runner.next_cycle
-        record = CommandRecord(cycle, self.unit.name, command.command, command.arguments_json, False, error_id, text)
-        self.unit.records.append(record)
-        self.unit.event(cycle, Severity.WARNING, error_id, text)
+        record = self._runner.refuse(command, error)
         self._publish_records()
         return record
 

@@ -1,0 +1,86 @@
+"""How the methods of units give their commands."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from cnc_ptp.client.job import Answer, Job, ProgramJob
+from cnc_ptp.client.link import Reply
+from cnc_ptp.client.session import Session
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.command_files import with_table
+from cnc_ptp.plc.setpoint_file import check_setpoints
+from cnc_ptp.protocol.commands import (
+    BAD_ARGUMENT,
+    COMMANDS,
+    FILE_CONTENTS,
+    OF_CHANNELS,
+    OF_PLC,
+    check_arguments,
+    check_sendable,
+)
+
+Rows = Sequence[Sequence[float]]
+"""Points of a cam table, external setpoints."""
+CONVERTED: Mapping[str, Callable[[Any], Any]] = {
+    "table": lambda rows: [[*row] for row in rows],
+    "setpoints": lambda rows: [[*row] for row in rows],
+    "files": dict,
+    "program": lambda path: str(Path(path).absolute()),
+}
+"""Arguments of which a client takes more than commands do."""
+
+
+class Asking:
+    """A unit that takes commands."""
+
+    def __init__(self, session: Session, name: str) -> None:
+        self._session = session
+        self.name = name
+        """As in the machine file."""
+        self.kind = session.link.kinds[name]
+        """axis, spindle, channel or plc."""
+
+    def _answer(self, command: str, **arguments: Any) -> Answer:
+        reply, _ = self._asked(command, arguments)
+        return Answer(reply.cycle, reply.message)
+
+    def _job(self, command: str, **arguments: Any) -> Job:
+        reply, given = self._asked(command, arguments)
+        return Job(self._session, self.name, command, given, reply)
+
+    def _program_job(self, command: str, **arguments: Any) -> ProgramJob:
+        reply, given = self._asked(command, arguments)
+        return ProgramJob(self._session, self.name, command, given, reply)
+
+    def _asked(self, command: str, arguments: dict[str, Any]) -> tuple[Reply, dict[str, Any]]:
+        """Reply and arguments, without those that are left out (None).
+
+        Raises CncError 22001 (arguments), 26110, 25102, 25103 (files), and the refusal of the unit.
+        """
+        given = {name: value for name, value in arguments.items() if value is not None}
+        for name in FILE_CONTENTS & COMMANDS[self.kind][command].keys():
+            given = with_table(given, name)
+        for name, value in given.items():
+            if (convert := CONVERTED.get(name)) is not None:
+                given[name] = convert(value)
+        self._check(command, given)
+        return self._session.ask(self.name, command, given), given
+
+    def _check(self, command: str, given: dict[str, Any]) -> None:
+        """What a service cannot carry is refused here, offline as in the graph. Raises CncError 22001."""
+        where = f"{self.kind} {self.name}: {command} refused"
+        known = {n: each for n, each in COMMANDS[self.kind][command].items() if n not in OF_PLC | OF_CHANNELS}
+        check_arguments(where, known, given)
+        check_sendable(where, known, given)
+        if "setpoints" in given:
+            check_setpoints(self.name, given["setpoints"])
+        for number, row in enumerate(given.get("table", ()), 1):
+            if len(row) != 2 or not all(isinstance(value, int | float) for value in row):
+                reason = f"point {number} of the table, {row}, is no pair of numbers (master, slave)"
+                raise CncError(BAD_ARGUMENT, reason, "nothing was sent", where=where)
+
+    def __repr__(self) -> str:
+        return f"<{self.kind} {self.name}>"

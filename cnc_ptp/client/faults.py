@@ -1,0 +1,40 @@
+"""What can go wrong with a client, besides what units refuse."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from cnc_ptp.errors import CncError, Value, nearest_name
+from cnc_ptp.machine.wiring import UNKNOWN_UNIT
+from cnc_ptp.protocol.blocks import Event
+
+TIMEOUT = 26160
+GONE = 26161
+CLOSED = 26162
+ABORTED = 26163
+NOTHING_MOVES = 26164
+UNSEEN = 26165
+NOT_STARTED = 26166
+IT_CONTINUES = "it continues"
+
+
+class UnknownUnit(CncError, AttributeError, KeyError):
+    """The machine has no unit of this name: `m.q` is an AttributeError, `m["q"]` a KeyError."""
+
+
+def unknown_unit(name: str, known: Iterable[str], what: str = "unit") -> UnknownUnit:
+    names = [*known]
+    reason = f"the machine has no {what} '{name}'{nearest_name(name, names)}"
+    return UnknownUnit(UNKNOWN_UNIT, reason, f"nothing was sent. Known: {', '.join(names) or 'none'}")
+
+
+def error_of(number: int, text: str, values: Mapping[str, Value]) -> CncError:
+    """An error with the whole text of a unit and the values in it."""
+    error = CncError(number, text)
+    error.values = values
+    return error
+
+
+def fault_of(event: Event) -> CncError:
+    """The error that an event tells of."""
+    return error_of(event.error_id, event.text, {value.name: value.value for value in event.values})

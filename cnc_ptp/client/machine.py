@@ -1,0 +1,208 @@
+"""A machine for programs: `with Machine.offline("config/mill.yaml") as m: m.x.move_absolute(100).wait()`."""
+
+from __future__ import annotations
+
+import atexit
+from collections.abc import Callable, Mapping
+from os import PathLike, fspath
+from types import TracebackType
+from typing import Any, TypeVar
+
+from cnc_ptp.client.faults import unknown_unit
+from cnc_ptp.client.link import Link
+from cnc_ptp.client.session import Session
+from cnc_ptp.client.stream import Stream
+from cnc_ptp.client.units import UNITS, Axis, Channel, Plc, Spindle, Unit
+from cnc_ptp.protocol.blocks import Event
+from cnc_ptp.protocol.unit import PLC
+
+Path = str | PathLike[str]
+Kind = TypeVar("Kind", Axis, Spindle, Channel)
+
+
+class Machine:
+    """The units of a machine by name: `m.x`, `m["x"]`; typed in `m.axes`, `m.spindles`, `m.channels`, `m.channel`, `m.plc`.
+
+    Made by `start` (a graph of its own), `connect` (a graph that runs already) or `offline` (no graph at all); the
+    calls are the same. Offline, time passes only while the program waits: in `wait`, `wait_until`, `run_for` and
+    iterators. `close`, or the end of a `with` block, ends it.
+    """
+
+    def __init__(self, link: Link) -> None:
+        self._session = Session(link)
+        self._units: dict[str, Unit] = {name: UNITS[kind](self._session, name) for name, kind in link.kinds.items()}
+        self.axes: Mapping[str, Axis] = self._of(Axis)
+        self.spindles: Mapping[str, Spindle] = self._of(Spindle)
+        self.channels: Mapping[str, Channel] = self._of(Channel)
+        atexit.register(self.close)
+
+    def _of(self, kind: type[Kind]) -> Mapping[str, Kind]:
+        units = {name: unit for name, unit in self._units.items() if isinstance(unit, kind)}
+        return Units(units, kind.__name__.lower())
+
+    # where it comes from
+
+    @classmethod
+    def offline(cls, machine: Path, *, record: Path | None = None) -> Machine:
+        """A machine without a graph, as fast as possible, the same to the bit every time. Its first block is computed.
+
+        `record`: an MCAP file, as of `cnc_ptp simulate`. Raises ParameterError, and CncError 26007, 26110, 26117.
+        """
+        from cnc_ptp.client.offline_link import OfflineLink
+
+        return cls(OfflineLink(fspath(machine), record=None if record is None else fspath(record)))
+
+    @classmethod
+    def start(
+        cls,
+        machine: Path,
+        *,
+        record: Path | None = None,
+        scenario: Path | None = None,
+        composed: bool = False,
+        domain: int | None = None,
+        namespace: str = "",
+        timeout: float = 60.0,
+    ) -> Machine:
+        """Starts the ROS graph of a machine, as `cnc_ptp run --stay` does; it ends on its ramps with this program.
+
+        `record`: an MCAP file; `scenario`: timed commands; `composed`: all nodes in one process; `domain`: None =
+        ROS_DOMAIN_ID; `namespace`: of all nodes; `timeout` in s until it runs. Raises ParameterError, CncError 26166
+        (not started) and what `cnc_ptp run` refuses: 26107 (the domain is taken), 26108, 26110, 26113, 26117, 26141 …
+        """
+        from cnc_ptp.client.graph_link import start_graph
+
+        files = {name: fspath(path) for name, path in (("record", record), ("scenario", scenario)) if path is not None}
+        options = {"machine": fspath(machine), "composed": composed, **files}
+        return cls(start_graph(options, domain=domain, namespace=namespace, timeout=timeout))
+
+    @classmethod
+    def connect(cls, *, domain: int | None = None, namespace: str = "", timeout: float = 5.0) -> Machine:
+        """The machine that runs on this ROS domain; motions and programs continue when this client ends, jogs end.
+
+        As `start`; `timeout` in s for it to be found. Raises CncError 26108, 26135.
+        """
+        from cnc_ptp.client.graph_link import connect_graph
+
+        return cls(connect_graph(domain=domain, namespace=namespace, timeout=timeout))
+
+    # units
+
+    @property
+    def plc(self) -> Plc:
+        """The PLC."""
+        plc = self._units[PLC]
+        assert isinstance(plc, Plc)
+        return plc
+
+    @property
+    def channel(self) -> Channel:
+        """The channel of this name, or the first one. Raises CncError 26111 where there is none."""
+        for channel in [self.channels.get("channel"), *self.channels.values()]:
+            if channel is not None:
+                return channel
+        raise unknown_unit("channel", self._units)
+
+    def __getitem__(self, name: str) -> Unit:
+        """The unit of this name. Raises CncError 26111, which is also a KeyError."""
+        unit = self._units.get(name)
+        if unit is None:
+            raise unknown_unit(name, self._units)
+        return unit
+
+    def __getattr__(self, name: str) -> Any:
+        """As `m[name]`; the error is also an AttributeError."""
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return self[name]
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self._units]
+
+    # time
+
+    @property
+    def cycle(self) -> int:
+        """The first cycle that not every unit has told of."""
+        return self._session.link.seen.cycle
+
+    @property
+    def time(self) -> float:
+        """Seconds of the machine up to that cycle."""
+        return self._session.time
+
+    @property
+    def cycle_time(self) -> float:
+        """Seconds."""
+        return self._session.link.cycle_time
+
+    def run_for(self, seconds: float) -> None:
+        """Lets so much time of the machine pass, rounded up to whole blocks."""
+        self._session.run(self._session.until(self._time_is(seconds), None, "run_for", may_stall=True))
+
+    async def run_for_async(self, seconds: float) -> None:
+        """As `run_for`, in an event loop."""
+        await self._session.run_async(self._session.until(self._time_is(seconds), None, "run_for", may_stall=True))
+
+    def _time_is(self, seconds: float) -> Callable[[], bool]:
+        end = self.cycle + round(seconds / self.cycle_time)
+        return lambda: self.cycle >= end
+
+    def wait_until(self, condition: Callable[[], bool], timeout: float | None = None) -> None:
+        """Waits until the condition is true; it is asked with every block. Raises as `Job.wait`."""
+        self._session.run(self._session.until(condition, timeout, "the condition has not come true", effect=""))
+
+    async def wait_until_async(self, condition: Callable[[], bool], timeout: float | None = None) -> None:
+        """As `wait_until`, in an event loop."""
+        turns = self._session.until(condition, timeout, "the condition has not come true", effect="")
+        await self._session.run_async(turns)
+
+    def events(self, duration: float | None = None) -> Stream[Event, Event]:
+        """The events of all units from now on: state changes, warnings, errors. As `Axis.states`."""
+        mailbox = self._session.link.seen.events()
+        return Stream(self._session, mailbox, lambda event: [event], duration=duration, what="no new event")
+
+    # the end
+
+    def close(self) -> None:
+        """The end; offline, and of a graph that was started, everything stops on its ramps. A second call has no effect."""
+        if self._session.closed:
+            return
+        self._session.closed = True
+        atexit.unregister(self.close)
+        self._session.link.close()
+
+    def __enter__(self) -> Machine:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        try:
+            self.close()
+        except Exception as second:
+            if error is None:
+                raise
+            error.add_note(f"then, when the machine was closed: {second}")
+
+    async def __aenter__(self) -> Machine:
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.__exit__(kind, error, trace)
+
+    def __repr__(self) -> str:
+        return f"<machine of {', '.join(self._units)}{', closed' if self._session.closed else ''}>"
+
+
+class Units(dict[str, Kind]):
+    """The units of one kind by name; a name that is not there has its own error."""
+
+    def __init__(self, units: Mapping[str, Kind], what: str) -> None:
+        super().__init__(units)
+        self._what = what
+
+    def __missing__(self, name: str) -> Kind:
+        raise unknown_unit(name, self, self._what)

@@ -1,0 +1,83 @@
+"""A client of a machine in a thread of its own, which alone uses ROS."""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future
+from contextlib import suppress
+from typing import Any, TypeVar
+
+import rclpy
+from rclpy.context import Context
+
+from cnc_ptp.nodes import process
+from cnc_ptp.nodes.client.machine_client import MachineClient
+
+Result = TypeVar("Result")
+PERIOD = 0.005
+"""Seconds between two looks for what has come: a process that each block wakes would cost more."""
+
+
+class ClientThread:
+    """Does what it is asked to with its client, one after the other, and calls `after` many times per second."""
+
+    def __init__(self, *, domain: int | None, namespace: str, after: Callable[[MachineClient], None]) -> None:
+        """`domain`: None = ROS_DOMAIN_ID; `namespace` of the machine; `after` is called in the thread.
+
+        Raises CncError 26108 when ROS does not start.
+        """
+        self._after = after
+        self._calls: deque[tuple[Callable[[MachineClient], Any], Future[Any]]] = deque()
+        self._ends = False
+        self._context = Context()
+        started: Future[MachineClient] = Future()
+        words = ["--ros-args", "-r", f"__ns:=/{namespace.strip('/')}"] if namespace.strip("/") else []
+        self._thread = threading.Thread(target=self._run, args=(started, words, domain), name="cnc_ptp", daemon=True)
+        self._thread.start()
+        self.client = started.result()
+
+    def call(self, function: Callable[[MachineClient], Result]) -> Future[Result]:
+        """Has the thread call a function with its client."""
+        future: Future[Result] = Future()
+        self._calls.append((function, future))
+        if self._ends:
+            future.cancel()
+        return future
+
+    def close(self) -> None:
+        """The end of the thread and of its client."""
+        self._ends = True
+        self._thread.join()
+
+    def _run(self, started: Future[MachineClient], words: Sequence[str], domain: int | None) -> None:
+        try:
+            process.initialise(self._context, words=words, domain=domain)
+            client = MachineClient(context=self._context)
+        except BaseException as error:  # for the thread that waits for it
+            started.set_exception(error)
+            rclpy.try_shutdown(context=self._context)
+            return
+        started.set_result(client)
+        try:
+            while not self._ends:
+                client.spin_until(lambda: bool(self._calls) or self._ends, PERIOD)
+                self._do_calls(client)
+                client.take_polled()
+                self._after(client)
+        finally:
+            self._ends = True
+            for _, future in self._calls:
+                future.cancel()
+            client.end()
+            with suppress(RuntimeError):
+                rclpy.try_shutdown(context=self._context)
+
+    def _do_calls(self, client: MachineClient) -> None:
+        while self._calls:
+            function, future = self._calls.popleft()
+            try:
+                future.set_result(function(client))
+            except Exception as error:  # for the thread that has asked
+                future.set_exception(error)

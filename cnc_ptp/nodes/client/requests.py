@@ -1,0 +1,62 @@
+"""Arguments of commands as requests of their services; what comes back is in nodes/unit/requests.py."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from cnc_ptp import msg
+from cnc_ptp.errors import CncError
+from cnc_ptp.nodes.unit.requests import NOT_GIVEN
+from cnc_ptp.protocol.commands import BAD_ARGUMENT
+
+INTEGER_FIELD = re.compile(r"(u?)int(\d+)")
+
+
+def request_of(service: Any, arguments: Mapping[str, Any]) -> Any:
+    """A request with these arguments; what is left out is so there too, whatever the default of its field is."""
+    request = service.Request()
+    for name, kind in service.Request.get_fields_and_field_types().items():
+        if name in arguments:
+            value = arguments[name]
+            setattr(request, name, [setpoint_of(row) for row in value] if name == "setpoints" else value)
+        elif name.startswith("has_"):
+            setattr(request, name, name.removeprefix("has_") in arguments)
+        elif kind == "double" and getattr(request, name) != NOT_GIVEN:
+            setattr(request, name, math.nan)
+    if "files" in arguments:
+        request.file_names, request.file_texts = [*arguments["files"]], [*arguments["files"].values()]
+    if "table" in arguments:
+        request.master_points = [float(master) for master, _ in arguments["table"]]
+        request.slave_points = [float(slave) for _, slave in arguments["table"]]
+    return request
+
+
+def setpoint_of(row: Sequence[float]) -> msg.ExternalSetpoint:
+    """The message of a row that read_setpoint takes."""
+    cycle, position, velocity, acceleration, direction = row
+    return msg.ExternalSetpoint(
+        valid=True,
+        cycle=int(cycle),
+        position=float(position),
+        velocity=float(velocity),
+        acceleration=float(acceleration),
+        direction=int(direction),
+    )
+
+
+def check_integers(where: str, service: Any, arguments: Mapping[str, Any]) -> None:
+    """Raises CncError 22001 for an integer that the field of the service does not hold: ROS would wrap it around."""
+    fields = service.Request.get_fields_and_field_types()
+    for name, value in arguments.items():
+        if found := INTEGER_FIELD.fullmatch(fields.get(name, "")):
+            low, high = integer_range(found[1] == "u", int(found[2]))
+            if not low <= value <= high:
+                reason = f"{name} = {value} is not within {low} … {high}"
+                raise CncError(BAD_ARGUMENT, reason, "nothing was sent", where=where)
+
+
+def integer_range(unsigned: bool, bits: int) -> tuple[int, int]:
+    return (0, 2**bits - 1) if unsigned else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)

@@ -1,0 +1,81 @@
+"""A machine that runs offline and is recorded: each block is computed, then written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from types import TracebackType
+
+from cnc_ptp.machine.offline import OfflineMachine, Outputs
+from cnc_ptp.parameters import MachineParameters
+from cnc_ptp.protocol.blocks import CycleTick
+from cnc_ptp.protocol.unit import PLC, Unit
+from cnc_ptp.recording.trigger import Condition, TriggeredRecording, make_recording
+from cnc_ptp.recording.writer import Recording
+
+
+class OfflineRun:
+    """The run of an offline machine, with a recording if one is wanted; it is closed at the end of a `with` block.
+
+    Raises CncError 26007 where the recording cannot be written.
+    """
+
+    def __init__(
+        self,
+        parameters: MachineParameters,
+        units: Mapping[str, Unit],
+        *,
+        record: str | None = None,
+        machine_text: str = "",
+        condition: Condition | None = None,
+    ) -> None:
+        """`units` in the order of computation; `machine_text` is kept in the recording `record`.
+
+        `condition`: with which the recording begins; None: at once.
+        """
+        self.machine = OfflineMachine(parameters, units)
+        cycle_time_ns = parameters.cycle_time_us * 1000
+        self._recording: Recording | None = None
+        if record is not None:
+            self._recording = make_recording(record, machine_text, 0, cycle_time_ns, condition)
+
+    def step(self) -> Outputs:
+        """The next block of all units."""
+        return self._recorded(self.machine.tick())
+
+    def run(self, *, cycles: int | None = None) -> Iterator[Outputs]:
+        """Block by block to the end of the run, as OfflineMachine.run."""
+        return map(self._recorded, self.machine.run(cycles=cycles))
+
+    @property
+    def waits_for_trigger(self) -> bool:
+        """The condition of the recording has not been true yet."""
+        return isinstance(self._recording, TriggeredRecording) and self._recording.begin is None
+
+    def close(self) -> None:
+        if self._recording is not None:
+            self._recording.close()
+
+    def _recorded(self, outputs: Outputs) -> Outputs:
+        if self._recording is not None:
+            write(self._recording, outputs)
+        return outputs
+
+    def __enter__(self) -> OfflineRun:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+
+def write(recording: Recording, outputs: Outputs) -> None:
+    """Records the blocks, events and commands of all units for one tick."""
+    plc = outputs[PLC].block
+    recording.tick(CycleTick(plc.first_cycle, plc.count))
+    for name, output in outputs.items():
+        recording.block(name, output.block)
+        for event in output.events:
+            recording.event(event)
+        for record in output.records:
+            recording.command(record)

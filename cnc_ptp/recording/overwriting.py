@@ -1,0 +1,37 @@
+"""A file that is written must not be one of those that are read for it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.parameters import machine_files
+
+OVERWRITES = 26117
+MACHINE_FILE = "machine_file"
+"""The input whose own files must not be overwritten either."""
+
+
+def check_recording(record: str | None, **inputs: str | None) -> None:
+    """Raises CncError 26117 when the recording of a run is one of its inputs, each by its kind: machine_file="…"."""
+    if record is not None and Path(record).exists() and (what := overwritten(record, inputs)):
+        raise CncError(OVERWRITES, f"recording {record} would overwrite the {what}", "nothing was started")
+
+
+def overwritten(output: str, inputs: Mapping[str, str | None]) -> str:
+    """The input that is the same file as `output`, `machine file mill.yaml`; empty if none is."""
+    for what, path in inputs.items():
+        if path is None:
+            continue
+        if _same(Path(output), Path(path)):
+            return f"{what.replace('_', ' ')} {path}"
+        for named in machine_files(path) if what == MACHINE_FILE else ():
+            if _same(Path(output), named):
+                return f"file {named} of the machine file {path}"
+    return ""
+
+
+def _same(one: Path, other: Path) -> bool:
+    """Whether both are one file, or would be: links of either kind count, and files that do not exist yet."""
+    return one.resolve() == other.resolve() or (one.exists() and other.exists() and one.samefile(other))
