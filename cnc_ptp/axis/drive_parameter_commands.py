@@ -65,4 +65,6 @@ class DriveParameterCommands:
         return service
 
     def _refuse(self, command: str, error: ServiceError) -> None:
-        self._axis.refuse(command, SERVICE_CHANNEL, f"{error.reason} (SERCOS error 0x{error.code:04x})", code=error.code)
+        self._axis.refuse(
+            command, SERVICE_CHANNEL, f"{error.reason} (SERCOS error 0x{error.code:04x})", code=error.code
+        )

@@ -17,8 +17,8 @@ from enum import Enum, auto
 from cnc_ptp.axis import transitions as T
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.faults import HOMING_SIGNAL_MISSING
-from cnc_ptp.control.drives.reference_marks import ReferenceMarks
 from cnc_ptp.control.control_loop import ControlLoop
+from cnc_ptp.control.drives.reference_marks import ReferenceMarks
 from cnc_ptp.motion.setpoints import MotionState
 
 

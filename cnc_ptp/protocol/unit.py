@@ -12,7 +12,6 @@ from cnc_ptp.protocol.commands import OF_PLC, check_command, current_names, with
 from cnc_ptp.protocol.jobs import JOBS, Jobs
 
 
-
 class Answer(NamedTuple):
     """What a command was to find out, as text and by name."""
 
@@ -32,7 +31,8 @@ class Unit(ABC):
     """A channel, axis, spindle or the PLC: changed by commands only, advanced by `step` block by block.
 
     A handler `do_<command>(cycle, **arguments)` validates first and raises CncError to refuse; a text that it returns
-    is a warning that goes into the record, an Answer what it was to find out. Nothing here knows processes, topics or clocks.
+    is a warning that goes into the record, an Answer is what it was to find out. Nothing here knows processes, topics
+    or clocks.
     """
 
     kind: ClassVar[str]
@@ -85,7 +85,7 @@ class Unit(ABC):
         return record
 
     _warning = ""
-    _values: Mapping[str, Value] = {}  # noqa: RUF012
+    _values: Mapping[str, Value] = {}
 
     def begin_job(self, command: Command, cycle: int) -> int:
         """A command that is a job was carried out: the number of the job, 0 if there was nothing to do."""

@@ -62,9 +62,7 @@ _NESTED: dict[str, Callable[[Any], Any]] = {
     "commands": lambda sent: Command(sent.target, sent.command, json.loads(sent.arguments_json), sent.id),
     "refused": lambda text: Refusal.decode(text),
     "job_events": lambda sent: JobEvent(sent.job, sent.status, sent.cycle, sent.error_id),
-    "answers": lambda sent: CommandAnswer(
-        sent.id, sent.error_id, sent.job, sent.message, sent.values_json
-    ),
+    "answers": lambda sent: CommandAnswer(sent.id, sent.error_id, sent.job, sent.message, sent.values_json),
     "offsets": lambda sent: channel_offsets(sent),
     "requests": lambda sent: HandshakeRequest(
         **{name: getattr(sent, name) for name in HandshakeRequest.__dataclass_fields__}

@@ -120,7 +120,9 @@ def test_soft_limits_count_from_the_reference_on() -> None:
     assert bench.accepted("move_relative", distance=-400.0) == ""
     bench.run(5000)
     home(bench)
-    assert "target 401.0 mm lies beyond the positive soft limit 400.0 mm" in bench.refused("move_absolute", target=401.0)
+    assert "target 401.0 mm lies beyond the positive soft limit 400.0 mm" in bench.refused(
+        "move_absolute", target=401.0
+    )
 
 
 def test_the_reference_point_gets_the_position_of_the_command() -> None:
@@ -454,9 +456,7 @@ def test_refusals_of_home() -> None:
     )
     bench.accepted("move_relative", distance=5.0)
     bench.run(10)
-    assert bench.refused("home") == (
-        f"P-ERR-23005 {HEAD}the axis is in DiscreteMotion, it must be in Standstill{TAIL}"
-    )
+    assert bench.refused("home") == (f"P-ERR-23005 {HEAD}the axis is in DiscreteMotion, it must be in Standstill{TAIL}")
     to_rest(bench)
     bench.run(1000)
     bench.accepted("lead", slave="y", enabled=True)
@@ -509,7 +509,9 @@ def test_home_writes_what_the_axis_list_says() -> None:
 
 
 def test_the_answer_of_the_plc_has_what_was_read() -> None:
-    scenario = "- {at: 0.0, to: x, do: read_drive_parameter, idn: S-0-0042}\n- {at: 0.1, to: x, do: home, position: 900}"
+    scenario = (
+        "- {at: 0.0, to: x, do: read_drive_parameter, idn: S-0-0042}\n- {at: 0.1, to: x, do: home, position: 900}"
+    )
     bench = MachineBench(None, scenario, machine=EXAMPLE).run()
     read, refused = [answer for block in bench.blocks["x"] for answer in block.answers]
     assert (read.error_id, read.message, read.values) == (0, "S-0-0042 = 400000", {"S-0-0042": 400_000})

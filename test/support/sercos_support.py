@@ -26,7 +26,9 @@ V, A, J = 60.0, 400.0, 8000.0
 """The drive's own motions."""
 
 
-def sercos_axis(*, fault: str = "NONE", parameter_scaling: bool = False, ideal: bool = True, **homing: Any) -> AxisParameters:
+def sercos_axis(
+    *, fault: str = "NONE", parameter_scaling: bool = False, ideal: bool = True, **homing: Any
+) -> AxisParameters:
     """The axis of examples/sercos.yaml with another homing; `ideal`: a drive without lag, an encoder without steps.
 
     Short names: `at` of the start, `acceleration` and `jerk` of the drive, `referenced` at start, `bus_delay`.

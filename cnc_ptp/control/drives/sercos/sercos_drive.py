@@ -35,9 +35,7 @@ class SercosDrive(Drive):
             place=drive.position,
             standstill_window=max(SLOWEST, plant.kv * plant.encoder_increment),
         )
-        super().__init__(
-            has_torque=drive.has_torque, service=ServiceChannel(sercos, homing, own_motion=own_motion)
-        )
+        super().__init__(has_torque=drive.has_torque, service=ServiceChannel(sercos, homing, own_motion=own_motion))
         self._drive, self._homing = drive, homing
         self._take_over()
 

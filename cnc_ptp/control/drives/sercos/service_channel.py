@@ -16,8 +16,13 @@ ALREADY_ACTIVE = 0x7010
 NOT_EXECUTABLE = 0x7012
 """Error codes of the SERCOS service channel."""
 
-HELD_WHILE_HOMING = (idns.HOMING_VELOCITY, idns.HOMING_ACCELERATION, idns.REFERENCE_DISTANCE, idns.JERK)
-HELD_WHILE_HOMING += (idns.HOMING_PARAMETER,)
+HELD_WHILE_HOMING = (
+    idns.HOMING_VELOCITY,
+    idns.HOMING_ACCELERATION,
+    idns.JERK,
+    idns.REFERENCE_DISTANCE,
+    idns.HOMING_PARAMETER,
+)
 LINEAR_EXPONENT, ROTATIONAL_EXPONENT = -6, -4
 """S-0-0046 of preferred scaling: m/min, rpm."""
 
@@ -134,7 +139,8 @@ class ServiceChannel:
         supported = bits & ~idns.HOMING_BITS == 0 and bits & idns.SWITCH_AT_DRIVE
         if not supported:
             raise ServiceError(
-                INVALID, f"{idns.HOMING_PARAMETER} = 0x{bits:x}: the drive supports 0x04 and, with it, 0x01, 0x20, 0x40, 0x80"
+                INVALID,
+                f"{idns.HOMING_PARAMETER} = 0x{bits:x}: the drive supports 0x04 and, with it, 0x01, 0x20, 0x40, 0x80",
             )
         both = idns.WITHOUT_SWITCH | idns.WITHOUT_MARKER
         if bits & both == both:
