@@ -4,8 +4,8 @@ import json
 
 import pytest
 from client_support import beside_composed_run
-from graph_support import run, states_equal, verified
-from machine_support import ROOT
+from graph_support import ROOT, run, states_equal, verified
+
 
 from cnc_ptp.protocol.axis_states import AxisStateCode
 from cnc_ptp.recording.reader import read_recording
