@@ -128,7 +128,7 @@ class AxisUnit(Unit):
         return self._last_block is not None and self._last_block.state[-1] == S.SYNCHRONIZED_MOTION
 
     def waits_for(self) -> str:
-        """See Unit: only a command ends the motion of a slave that was decoupled while it moved, or a PLC's S-0-0148."""
+        """See Unit: only commands end the motion of a slave that was decoupled in motion, and what S-0-0148 began."""
         block = self._last_block
         if self._drive_homing.waits_for_plc:
             return f"axis {self.name} waits for S-0-0148 = 0"

@@ -98,7 +98,7 @@ class DriveHoming:
         self._axis.ptp.take_over(cycle, self._loop.position, 0.0, 0.0)
 
     def _set_override(self, homing: HomingProcedure) -> None:
-        """S-0-0108: the override; 0 until both directions are released, as the axis does not know where the drive goes."""
+        """S-0-0108. The axis does not know where its drive will go: 0 until both directions are released."""
         ptp = self._axis.ptp
         homing.set_override(0.0 if ptp.restricted else ptp.override)
 

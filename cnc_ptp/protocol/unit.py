@@ -13,7 +13,6 @@ from cnc_ptp.protocol.control_units import PERCENT, ControlUnit
 from cnc_ptp.protocol.jobs import JOBS, Jobs
 from cnc_ptp.protocol.overlay import HELD_BY_PLC, SERVED_BY_PLC, Overlay
 
-
 class Answer(NamedTuple):
     """What a command was to find out, as text and by name."""
 
@@ -37,7 +36,8 @@ class Unit(ABC):
     """A channel, axis, spindle or the PLC: changed by commands only, advanced by `step` block by block.
 
     A handler `do_<command>(cycle, **arguments)` validates first and raises CncError to refuse; a text that it returns
-    is a warning that goes into the record, an Answer what it was to find out. Nothing here knows processes, topics or clocks.
+    is a warning that goes into the record, an Answer is what it was to find out. Nothing here knows processes, topics
+    or clocks.
     """
 
     kind: ClassVar[str]

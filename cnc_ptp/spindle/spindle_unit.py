@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 from typing import Any, ClassVar
@@ -130,9 +130,9 @@ class SpindleUnit(Unit):
         handler = self._group_handler(command)
         return partial(self._in_turn, command) if command in MOTION else handler
 
-    def _group_handler(self, command: str) -> Handler:
+    def _group_handler(self, command: str) -> Callable[..., str | None]:
         group = next(group for group in self._groups if hasattr(group, f"do_{command}"))
-        handler: Handler = getattr(group, f"do_{command}")
+        handler: Callable[..., str | None] = getattr(group, f"do_{command}")
         return handler
 
     def _in_turn(

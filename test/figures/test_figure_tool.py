@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 from figure_support import SCENARIOS, head_and_scenario, run_of, texts_of
+from machine_support import MachineBench
 
 from cnc_ptp.plots.colours import BAND, DARK
 from cnc_ptp.plots.panels import UNIT_KINDS
@@ -281,3 +282,16 @@ def test_command_refuses_unknown_names(tmp_path):
     result = CliRunner().invoke(command.main, ["nothing", "--scenarios", str(tmp_path)])
     assert result.exit_code == 2
     assert f"there is no scenario {tmp_path}/nothing.yaml; nothing was drawn" in " ".join(result.output.split())
+
+
+def test_columns_of_panels_have_a_number_for_each_cycle() -> None:
+    """Answers and events of jobs, which are lists of a block too, are none."""
+    scenario = (
+        "- {at: 0, to: x, do: move_absolute, target: 1}\n- {at: 0, to: s, do: start, direction: cw, speed_rpm: 9}"
+    )
+    bench = MachineBench(None, scenario).run(0.1)
+    for unit, kind in (("x", "axis"), ("s", "spindle")):
+        for block in bench.blocks[unit]:
+            for name in UNIT_KINDS[kind].columns:
+                column = getattr(block, name)
+                assert len(column) == block.count and all(isinstance(value, int | float) for value in column), name

@@ -16,7 +16,8 @@ def make_drive(control: ControlParameters, cycle_time: float) -> Drive:
     """The drive of the parameters; `cycle_time` in s.
 
     Plant (P-SIM-00006), on a SERCOS axis with the drive's own motions, then the form of its commands (telegram,
-    P-AXIS-00320), then the bus (P-SIM-00018), then its formats, except for the simulated drive (P-AXIS-00020 = 4), which takes kernel units. Type 16 has no drive at all.
+    P-AXIS-00320), then the bus (P-SIM-00018), then its formats, except for the simulated drive (P-AXIS-00020 = 4),
+    which takes kernel units. Type 16 has no drive at all.
     """
     interface, plant = control.drive.interface, control.plant
     if interface == "none":

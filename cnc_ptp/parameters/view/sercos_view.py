@@ -15,7 +15,7 @@ ABORTED, NO_REFERENCE, NO_ANSWER = "ABORTED", "NO_REFERENCE", "NO_ANSWER"
 
 @dataclass(frozen=True, slots=True)
 class SercosParameters:
-    """A SERCOS drive (P-AXIS-00020 = 2) in mm, mm/s (°, °/s); its homing velocity, flags and signals are in `homing`."""
+    """A SERCOS drive (P-AXIS-00020 = 2), mm and mm/s (°, °/s); homing velocity, flags and signals are in `homing`."""
 
     rotary: bool
     homing: HomingParameters

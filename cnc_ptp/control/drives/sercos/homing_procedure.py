@@ -70,7 +70,7 @@ class HomingSettings(NamedTuple):
 
 
 class HomingProcedure:
-    """The drive's side of S-0-0148, cycle by cycle. Places are those of the encoder; `origin` makes positions of them."""
+    """The drive's side of S-0-0148, cycle by cycle. Places are the encoder's; `origin` makes positions of them."""
 
     def __init__(
         self, drive: SercosParameters, *, cycle_time: float, kv: float, place: float, standstill_window: float
