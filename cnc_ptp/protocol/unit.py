@@ -144,7 +144,7 @@ class Unit(ABC):
         """A command of others: it acts where the PLC serves nothing of it, and is remembered elsewhere."""
         overlay = self.overlay
         before = overlay.ask(requests)
-        held = [name for name in requests if overlay.holder(name) is not None]
+        held = [name for name in requests if overlay.holder(name) is not None and not overlay[name].either]
         message: str | None = None
         if len(held) < len(requests):
             try:
@@ -179,8 +179,8 @@ class Unit(ABC):
         if command == "reset" and self.overlay.value("emergency_stop"):
             raise self._refusal(command, EMERGENCY_HOLDS, "the emergency stop holds; release it first")
 
-    def _refusal(self, command: str, number: int, reason: str) -> CncError:
-        return CncError(number, reason, "nothing was changed", where=f"{self.kind} {self.name}: {command} refused")
+    def _refusal(self, command: str, number: int, reason: str, effect: str = "nothing was changed") -> CncError:
+        return CncError(number, reason, effect, where=f"{self.kind} {self.name}: {command} refused")
 
     def _do_overlay(
         self,
@@ -194,10 +194,9 @@ class Unit(ABC):
     ) -> Command:
         """The PLC serves a control unit with a value, or gives it back; an edge with the value 1 is carried out."""
         if control_unit not in self.overlay:
-            known = ", ".join(self.overlay.names)
             near = nearest_name(control_unit, self.overlay.names)
-            reason = f"unknown control unit '{control_unit}'{near}; known are: {known}"
-            raise self._refusal("overlay", BAD_ARGUMENT, reason)
+            effect = f"nothing was changed. Known: {', '.join(self.overlay.names)}"
+            raise self._refusal("overlay", BAD_ARGUMENT, f"unknown control unit '{control_unit}'{near}", effect)
         unit = self.overlay[control_unit]
         if enabled:
             value = self._checked(unit, value)

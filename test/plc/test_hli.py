@@ -1,0 +1,202 @@
+"""The HLI of a whole machine, without ROS: messages in, commands in blocks, functions, life sign, status out."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+from hli_support import AXIS, SPINDLE, message
+from machine_support import MILL, MachineBench
+from spindle_support import two_gears
+
+from cnc_ptp.machine.offline import OfflineMachine
+from cnc_ptp.machine.wiring import build_units, unit_kinds
+from cnc_ptp.parameters import MachineParameters
+from cnc_ptp.plc.hli.hli import Hli
+from cnc_ptp.plc.hli.status import status
+from cnc_ptp.plc.plc_unit import PlcUnit
+from cnc_ptp.protocol.blocks import Command
+from cnc_ptp.protocol.channel_states import ChannelStateCode as C
+
+TWO_M = "%P\nN10 M08\nN20 G01 X5 F3000\nM30"
+
+
+class Machine(MachineBench):
+    """A machine with an HLI; `say` is a message of a PLC."""
+
+    def __init__(self, program: str | None = None, *, machine: MachineParameters = MILL, **options: Any) -> None:
+        super().__init__(program, machine=machine, **options)
+        plc = self.units["plc"]
+        assert isinstance(plc, PlcUnit)
+        self.plc = plc
+        kinds = unit_kinds(machine)
+        self.hli = Hli(plc, kinds=kinds, largest_overrides=dict.fromkeys(kinds, 100.0), timeout=0.5)
+        self._kinds = kinds
+        self.now = 0.0
+
+    def say(self, unit: str, source: str = "p1", **served: Any) -> None:
+        self.now += 0.01
+        self.hli.take(unit, message(self._kinds[unit], source, **served), self.now)
+
+    def shown(self, unit: str) -> dict[str, Any]:
+        return status(self.hli.objects[unit], self.plc.reported[unit])  # type: ignore[arg-type]
+
+    def texts(self) -> list[str]:
+        return [f"{event.error_id} {event.text}" for event in self.events if event.source == "plc"]
+
+
+def test_a_command_of_the_plc_acts_in_the_next_block_and_is_recorded() -> None:
+    bench = Machine(end_when_idle=False).run(0.1)
+    bench.say("x", override=40.0)
+    bench.run(0.01)
+    assert bench.last("x").override_percent == [40.0] * 10
+    (record,) = [record for record in bench.records if record.command == "overlay"]
+    assert record.arguments_json == '{"control_unit": "override", "enabled": true, "holder": "p1", "value": 40.0}'
+    assert (record.cycle, record.target) == (100, "x")
+    bench.run(0.01)
+    assert bench.shown("x")["override"] == {
+        "enable_r": True, "request_r": 100.0, "state_r": 40.0, "request_hli": 1000, "state_hli": 400,
+    }  # fmt: skip
+
+
+def test_what_a_plc_commanded_is_computed_again_from_the_records_alone() -> None:
+    """Also an edge that a client was refused, and what it had asked for meanwhile."""
+    bench = Machine(TWO_M, end_when_idle=False)
+    for step in range(80):
+        if step == 5:
+            bench.say("channel", override=30.0, reset=0.0)
+        if step == 20:
+            bench.give("channel", "set_override", percent=90.0)
+            assert not bench.give("channel", "reset").accepted
+        if step == 40:
+            bench.say("channel", valid=False)
+        bench.run(0.01)
+    again = OfflineMachine(MILL, build_units(MILL, end_when_idle=False))
+    by_block: dict[int, dict[str, list[Command]]] = {}
+    for record in bench.records:
+        if record.target != "plc":
+            by_block.setdefault(record.cycle, {}).setdefault(record.target, []).append(Command.from_record(record))
+    for block in range(80):
+        outputs = again.replay_tick(by_block.get(block * 10, {}))
+        assert outputs["x"].block.set_position == bench.blocks["x"][block].set_position  # type: ignore[union-attr]
+        assert outputs["channel"].block.override_percent == bench.blocks["channel"][block].override_percent  # type: ignore[union-attr]
+    assert bench.last("channel").override_percent[-1] == 90.0
+
+
+def test_an_edge_and_an_external_command_are_answered() -> None:
+    bench = Machine(end_when_idle=False).run(0.1)
+    bench.say("x", reset=1.0, external=AXIS)
+    bench.run(0.01)
+    assert bench.shown("x")["external"]["command_semaphore"]
+    bench.run(0.01)
+    shown = bench.shown("x")
+    assert shown["external"] == {"command_semaphore": False, "count_r": 1, "error_id": 0, "job": 1}
+    assert shown["reset"] == {"enable_r": True, "request_r": False, "count_r": 1, "error_id": 0} and shown["job"] == 1
+    bench.run(3.0)
+    shown = bench.shown("x")
+    assert (shown["set_position"], shown["set_position_hli"], shown["job"]) == (12.5, 125_000, 0)
+    bench.say("x", reset=0.0, external={**AXIS, "semaphore": 0})
+    bench.say("x", reset=0.0, external={**AXIS, "position": 1e6})
+    bench.run(0.02)
+    assert bench.shown("x")["external"]["error_id"] == 120002
+
+
+def test_external_commands_of_a_spindle_are_counted_for_the_plc() -> None:
+    bench = Machine(end_when_idle=False).run(0.1)
+    bench.say("s", external=SPINDLE)
+    bench.run(1.0)
+    shown = bench.shown("s")
+    assert (shown["set_speed_rpm"], shown["set_speed_hli"], shown["mode"]) == (600.0, 3_600_000, 2)
+    assert (shown["plc_commands"], shown["plc_acknowledged"], shown["stopped"]) == (1, 1, False)
+
+
+# ---------------------------------------------------------------- functions
+
+
+def test_functions_of_a_served_channel_wait_for_the_plc() -> None:
+    bench = Machine(TWO_M, end_when_idle=False)
+    bench.say("channel", functions=True)
+    bench.run(0.3)
+    assert bench.last("channel").state[-1] == C.WAITING
+    (request,) = bench.plc.requests_of("channel")
+    assert (request.kind, request.number, bench.shown("channel")["acknowledge_enable_r"]) == ("M", 8, True)
+    bench.say("channel", functions=True, done=(request.id,))
+    bench.run(1.0)
+    assert bench.position("x") == 5.0 and bench.plc.requests_of("channel") == []
+    bench.say("channel", functions=True)
+    bench.say("channel", functions=True, done=(request.id,))  # twice
+    bench.run(0.02)
+    text = f"plc plc: acknowledge refused: no request {request.id} waits; nothing was changed. Waiting: none"
+    assert bench.texts()[-1] == f"22013 {text}"
+
+
+def test_functions_that_are_never_acknowledged_abort_the_program() -> None:
+    bench = Machine(TWO_M, machine=replace(MILL, handshake_timeout_ms=300), end_when_idle=False)
+    bench.say("channel", functions=True)
+    bench.run(0.6)
+    text = "the PLC has not acknowledged request 1 (M08 in line 2) within 0.3 s (P-MACH-00060)"
+    effect = "the path stops on its ramp and the program is aborted"
+    assert bench.errors() == [f"P-ERR-22016 channel channel: {text}; {effect}"]
+
+
+def test_a_plc_that_gives_the_channel_back_leaves_its_functions_to_the_machine() -> None:
+    bench = Machine(TWO_M, end_when_idle=False)
+    bench.say("channel", functions=True)
+    bench.run(0.3)
+    bench.say("channel", valid=False)
+    bench.run(1.0)
+    assert bench.position("x") == 5.0
+    serves = [record.arguments_json for record in bench.records if record.command == "serve"]
+    assert serves == ['{"enabled": true, "unit": "channel"}', '{"enabled": false, "unit": "channel"}']
+
+
+def test_a_request_of_another_channel() -> None:
+    bench = Machine(TWO_M, end_when_idle=False)
+    bench.say("channel", functions=True)
+    bench.run(0.3)
+    bench.hli.objects["channel"].name = "other"
+    bench.say("channel", functions=True, done=(1,))
+    bench.run(0.01)
+    assert bench.texts() == ["26166 plc: HLI of other: request 1 is one of channel; nothing was changed"]
+
+
+@pytest.mark.parametrize("served", [False, True])
+def test_gear_changes_of_a_served_spindle_wait_for_the_plc(served: bool) -> None:
+    bench = Machine(machine=replace(MILL, spindles={"s": two_gears()}), end_when_idle=False).run(0.05)
+    if served:
+        bench.say("s", gear_changed=0.0)
+    bench.run(0.01)
+    bench.give("s", "select_gear", stage=2)
+    bench.run(1.0)
+    assert bench.shown("s")["gear_request"] == (2 if served else 0)
+    bench.say("s", gear_changed=1.0)
+    bench.run(0.1)
+    assert (bench.shown("s")["gear"], bench.shown("s")["gear_request"]) == (2, 0)
+
+
+def test_only_channels_and_spindles_have_functions() -> None:
+    bench = MachineBench().run(0.05)
+    text = "plc plc: serve refused: unit = 'x' is no channel or spindle; known are: channel, s; nothing was changed"
+    record = bench.offline.runner("plc").command(Command("plc", "serve", {"unit": "x", "enabled": True}))
+    assert (record.error_id, record.message) == (22001, text)
+
+
+# ---------------------------------------------------------------- status
+
+
+def test_objects_whose_plc_is_silent_become_free() -> None:
+    bench = Machine(end_when_idle=False).run(0.05)
+    bench.say("x", override=40.0)
+    bench.hli.watch(9.0)
+    bench.run(0.02)
+    assert not bench.shown("x")["held"] and bench.shown("x")["override"]["enable_r"]
+    text = "no message of 'p1' for 500 ms; what it has commanded holds, and another PLC may take it"
+    assert bench.texts() == [f"26165 plc: HLI of x: {text}"]
+
+
+def test_what_is_no_number_is_0_in_the_integers_of_the_hli() -> None:
+    bench = Machine(end_when_idle=False).run(0.05)
+    block = bench.plc.reported["s"]
+    block.distance_to_go_deg[-1] = float("nan")  # type: ignore[union-attr]
+    assert bench.shown("s")["distance_to_go_hli"] == 0
