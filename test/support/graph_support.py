@@ -18,6 +18,7 @@ from cnc_ptp.recording.verify import verify
 
 ROOT = Path(__file__).parents[2]
 MILL = ROOT / "config" / "mill.yaml"
+LATHE = ROOT / "config" / "lathe.yaml"
 PTP = ROOT / "config" / "ptp.yaml"
 TIMEOUT = 90.0
 
