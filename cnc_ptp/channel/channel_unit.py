@@ -346,6 +346,8 @@ class ChannelUnit(Unit):
 
     def do_upstream_lost(self, cycle: int, *, source: str) -> None:
         """Watchdog: PLC, clock, an axis or a spindle has not published in time; the path stops."""
+        if source in self._axes.nodes:
+            self._motion.axis_failed(self._axes.nodes.index(source))
         self._fault(cycle, UPSTREAM_LOST, f"no block of '{source}' came within the watchdog time")
 
     def waits_for(self) -> str:

@@ -292,6 +292,20 @@ def test_a_spindle_that_no_longer_reports():
     assert bench.column("z", "set_velocity")[3005:3040] == pytest.approx([-10.0] * 35)
 
 
+@pytest.mark.parametrize(("lost", "does"), [("x", STOPS), ("z", RETRACTS)])
+def test_an_axis_that_no_longer_reports(lost, does):
+    """It cannot retract; another one can."""
+    bench = MachineBench(HEAD + THREAD + "\nM30\n", machine=LATHE, end_when_idle=False).run(3.0)
+    bench.give("channel", "upstream_lost", source=lost)
+    bench.run(2.0)
+    assert_within_limits(bench)
+    text = (
+        f"26101 channel channel: no block of '{lost}' came within the watchdog time; {does} and the program is aborted"
+    )
+    assert texts(bench)[-1] == text
+    assert bench.column("x", "set_position")[-1] == (36.0 if lost == "x" else 41.0)
+
+
 def test_a_reset_while_the_thread_waits_moves_nothing():
     bench = cut(THREAD, "- {at: 1.2, to: channel, do: reset}")
     assert texts(bench, [22087]) == []

@@ -8,6 +8,7 @@ import numpy as np
 import psutil
 import pytest
 from graph_support import (
+    LATHE,
     LONG_PROGRAM,
     MILL,
     Running,
@@ -77,6 +78,52 @@ def test_killed_node_while_it_taps(tmp_path, node):
         assert speed.max() > 100.0 and speed[-1] == 0.0
 
 
+RETRACTS = "axis X retracts by 5 mm while the path follows spindle s, then the path stops and the program is aborted"
+THREAD_BREAKS_OFF = {
+    "s": f"channel channel: no block of 's' came within the watchdog time; {RETRACTS}",
+    "z": f"channel channel: no block of 'z' came within the watchdog time; {RETRACTS}",
+    "x": "channel channel: no block of 'x' came within the watchdog time; the path stops on its ramp in the thread and"
+    " the program is aborted",
+    "channel": "axis z: no block of 'channel' came within the watchdog time; the axis stops on its own ramp (ErrorStop)",
+}
+"""By the node that is killed: what the event says of the axes."""
+
+
+@pytest.mark.parametrize("node", THREAD_BREAKS_OFF)
+def test_killed_node_while_it_cuts_a_thread(tmp_path, node):
+    """The tool leaves the groove by X in step with the spindle, or the path stops in it, as the event says."""
+    (tmp_path / "thread.nc").write_text("G18 G90 M03 S400\nG00 X36 Z300\nG33 Z20 K1.5\nM30\n")
+    recording = tmp_path / "run.mcap"
+    graph = Running(LATHE, "--program", tmp_path / "thread.nc", "--record", recording)
+    try:
+        nodes = dict(graph.wait_for_nodes(8))
+        graph.wait_until_recorded(recording, 4 * UNDER_WAY)
+        kill(nodes[node])
+        output = graph.finish(expect=1)
+    finally:
+        graph.end()
+    assert f"P-ERR-26104 node '{node}' (process {nodes[node]}) was ended by SIGKILL" in output
+    assert f"P-ERR-26101 {THREAD_BREAKS_OFF[node]}" in output
+    assert wait_until_gone(nodes.values()) == []
+    recorded = verified(recording, whole=False)
+    check_every_reader_opens(recording)
+    check_ramps(recorded, skip=node, ended=True, axes=("x", "z"), machine=LATHE)
+    retracted = "retracts" in THREAD_BREAKS_OFF[node]
+    x, z, spindle = (recorded.states[f"/{name}/state"] for name in ("x", "z", "s"))
+    assert x["set_position"][-1] == (41.0 if retracted else 36.0)
+    assert z["set_position"].min() > 20.0, "the thread did not come to its end"
+    if retracted and node != "z":
+        lost = next(event.cycle for event in recorded.events if event.error_id == 26101)
+        inside = (x["cycle"] >= lost) & (x["set_position"] < 37.0)
+        assert inside.sum() > 10
+        assert z["set_velocity"][inside] == pytest.approx([-10.0] * inside.sum()), "at the last speed of the spindle"
+    if node != "s":
+        assert spindle["set_speed_rpm"][-1] == 0.0
+    passed = recorded.threads["channel"]
+    assert np.nanmax(abs(passed["set_phase_error_deg"])) < 0.01
+    assert set(passed["spindle"][passed["spindle"] > 0]) == {3}
+
+
 def test_killed_server_of_processes(running):
     """It alone learns how a node ends; the nodes are there and stop on their ramps."""
     graph, nodes, recording = running
@@ -122,9 +169,9 @@ def check_every_reader_opens(recording):
         assert bag.message_count == count == sum(1 for _ in bag.messages())
 
 
-def check_ramps(recorded, *, skip, ended, axes=("x", "y")):
+def check_ramps(recorded, *, skip, ended, axes=("x", "y"), machine=MILL):
     """No axis goes beyond its acceleration and jerk, and each that is alive is at a standstill at the end."""
-    machine = read_machine(str(MILL))
+    machine = read_machine(str(machine))
     for name in axes:
         axis, rows = machine.axes[name], recorded.states[f"/{name}/state"]
         assert np.all(np.diff(rows["cycle"].astype(int)) == 1), f"{name}: cycles are missing"

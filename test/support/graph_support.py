@@ -17,6 +17,7 @@ from cnc_ptp.recording.verify import verify
 
 ROOT = Path(__file__).parents[2]
 MILL = ROOT / "config" / "mill.yaml"
+LATHE = ROOT / "config" / "lathe.yaml"
 PTP = ROOT / "config" / "ptp.yaml"
 TIMEOUT = 150.0
 """Seconds: longer than a run whose nodes are started three times (supervisor.START_TIMEOUTS)."""

@@ -4,7 +4,8 @@ Each element gives its parallel. At an outer corner the tool goes around the cor
 cut where they cross. An element that the tool cannot reach, because it is shorter than the corner needs, vanishes: the
 parallels beside it are cut where they cross. One that is longer than the tool's diameter does not vanish, as something
 of the part would be missing. Nothing is handed out before so many elements behind it are known; a place where no
-parallels cross, or where the path comes nearer to an element than the radius, is a fault.
+parallels cross, or where the path comes nearer to an element than the radius, is a fault. Overruns of a closed contour
+bound nothing.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from typing import Final, NamedTuple
 
 from cnc_ptp.nc.radius.corners import around_by_arc, around_by_lines, corner_between, join
 from cnc_ptp.nc.radius.entries import Entry
+from cnc_ptp.nc.radius.overruns import closing
 from cnc_ptp.nc.radius.shapes import Arc, Line, Point, Shape, comes_nearer, intersections, nearest
 
 TOO_NEAR: Final = 1e-6
@@ -70,9 +72,18 @@ class ContourPath:
         """Those that a piece may come too near: of the pieces, and as many before them."""
         self._known = 0
         """Elements of `_elements` that are not handed out yet."""
+        self._first: Shape | None = None
+        self._gone = 0
+        """Elements that are no longer in `_elements`."""
+        self._unless_it_ends: TooNarrow | None = None
+        """What counts if a further element comes: the contour has closed, so the last one should be an overrun."""
 
     def add(self, element: Element) -> None:
         """The next element. Raises ArcTooSmall, TooNarrow."""
+        if self._unless_it_ends is not None:
+            raise self._unless_it_ends
+        if self._first is None:
+            self._first = element.shape
         parallel = self._parallel(element.shape)
         if self._pieces:
             self._turn_corner(element, parallel)
@@ -93,7 +104,7 @@ class ContourPath:
             piece = self._pieces.pop(0)
             if not self._pieces or self._pieces[0].element is not piece.element:
                 self._known -= self._passed(piece.element)
-            self._check(piece)
+            self._check(piece, all_known=all_known)
             if piece.shape.length > SHORTEST:
                 yield piece.element.entry, piece.shape, piece.own
         if all_known:
@@ -189,26 +200,49 @@ class ContourPath:
     def _passed(self, element: Element) -> int:
         """Elements that are handed out with this one: those that have vanished before it too."""
         unknown = len(self._elements) - self._known
-        place = next(place for place in range(unknown, len(self._elements)) if self._elements[place] is element)
-        del self._elements[: max(0, place + 1 - self.look_ahead)]
+        place = place_of(element, self._elements)
+        gone = max(0, place + 1 - self.look_ahead)
+        del self._elements[:gone]
+        self._gone += gone
         return place + 1 - unknown
 
-    def _check(self, piece: Piece) -> None:
+    def _check(self, piece: Piece, *, all_known: bool) -> None:
         """Raises TooNarrow for a piece that comes too near to one of the elements that are known."""
-        least = abs(self.left) - TOO_NEAR
-        if least <= 0.0 or piece.shape.length <= SHORTEST:
+        if abs(self.left) - TOO_NEAR <= 0.0 or piece.shape.length <= SHORTEST:
             return
         for element in self._elements:
-            if (
-                element is not piece.element
-                and may_meet(piece.shape, element.shape, least)
-                and comes_nearer(piece.shape, element.shape, least)
-            ):
-                raise TooNarrow(piece.element.entry, element.entry, nearest(piece.shape, element.shape))
+            if (piece.own and element is piece.element) or not self._too_near(piece.shape, element.shape):
+                continue
+            fault = TooNarrow(piece.element.entry, element.entry, nearest(piece.shape, element.shape))
+            if not self._is_overrun(piece, element):
+                raise fault
+            if not all_known:
+                self._unless_it_ends = fault
+
+    def _too_near(self, shape: Shape, other: Shape) -> bool:
+        least = abs(self.left) - TOO_NEAR
+        return may_meet(shape, other, least) and comes_nearer(shape, other, least)
+
+    def _is_overrun(self, piece: Piece, element: Element) -> bool:
+        """Whether the piece comes near to a part of the element alone that is an overrun of a closed contour."""
+        shapes = [each.shape for each in self._elements]
+        if self._gone and self._first is not None:
+            shapes.insert(0, self._first)
+        found = closing(shapes, complete=not self._gone)
+        if found is None:
+            return False
+        before = len(shapes) - len(self._elements)
+        owner, other = (place_of(each, self._elements) + before for each in (piece.element, element))
+        edge = found.edge(owner, other, shapes)
+        return edge is None or not self._too_near(piece.shape, edge)
 
 
 SMALLEST_RADIUS: Final = 1e-4
 """mm: the path has no arc with a smaller radius (the vendor's position increment)."""
+
+
+def place_of(element: Element, elements: list[Element]) -> int:
+    return next(place for place, each in enumerate(elements) if each is element)
 
 
 def may_meet(a: Shape, b: Shape, least: float) -> bool:

@@ -110,7 +110,12 @@ class Arc(NamedTuple):
         return self.centre[0] + self.radius * cos(angle), self.centre[1] + self.radius * sin(angle)
 
     def place(self, point: Point) -> float:
-        """Of the point of the circle in the direction of `point`; a little below 0 just before the start."""
+        """Of the point of the circle in the direction of `point`; a little below 0 just before the start.
+
+        0 for an arc of which nothing is left.
+        """
+        if not self.sweep:
+            return 0.0
         angle = atan2(point[1] - self.centre[1], point[0] - self.centre[0])
         passed = ((angle - self.begin) * self.turn) % tau
         size = abs(self.sweep)
