@@ -6,7 +6,7 @@ from cnc_ptp.axis import transitions as T
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.faults import COMPENSATION_RUNS, HOMING_DISABLED, MASTER_HOMES, NOT_READY, ON_CAM
 from cnc_ptp.axis.homing import Homing
-from cnc_ptp.axis.ptp_commands import refuse_other_source
+from cnc_ptp.axis.motions import refuse_other_source
 from cnc_ptp.parameters.view.homing_view import DISABLED
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import state_name

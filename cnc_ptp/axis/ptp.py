@@ -20,6 +20,7 @@ from cnc_ptp.motion import (
 from cnc_ptp.motion.limits import SMALLEST_LIMIT, check_limit, check_limits, check_state, rounding
 from cnc_ptp.motion.profile import Segment
 from cnc_ptp.motion.setpoints import MotionState, Setpoints
+from cnc_ptp.motion.to_position import leads_past
 
 NEGLIGIBLE = 1e-9
 """mm, mm/s (deg, deg/s): smaller values have no direction."""
@@ -145,6 +146,11 @@ class PtpGenerator:
         return 0.0 if self.job is None else self._full_velocity(self.job)
 
     @property
+    def rest(self) -> float:
+        """Where the active positioning, or the ramp of a stop, ends."""
+        return self._profile.end[0] if self.job is None else self.job.target
+
+    @property
     def can_redirect(self) -> bool:
         """True while there is a positioning, or a stop of one, that can be given a new target."""
         return self.job is not None or self._stopped_job is not None
@@ -178,13 +184,14 @@ class PtpGenerator:
         """True in the brake phase of a job to `target`, in which nothing can be changed."""
         return self.job is not None and self.job.target == target and self._in_brake_phase(cycle, self.job)
 
-    def halts(self, job: Job | None) -> bool:
-        """True while the axis is on the ramp that has ended `job`."""
-        return job is not None and self.job is None and self._stopped_job is job
+    @property
+    def halts_jog(self) -> bool:
+        """True while the axis is on the ramp that has ended a jog."""
+        return self.job is None and self._stopped_job is not None and self._stopped_job.jog
 
     def highest_velocity(self, cycle: int) -> float:
         """The largest |v| (mm/s) that the active positioning may still reach, including a pending new velocity."""
-        limits = [] if self.job is None else [self.job.reduced_velocity]
+        limits = [] if self.job is None else [self.job.reduced_velocity, abs(self.job.through)]
         coming = [] if self._activation is None else [self._activation.velocity]
         return max([abs(self.state(cycle)[1]), *limits, *coming])
 
@@ -221,11 +228,14 @@ class PtpGenerator:
     def continue_to(self, cycle: int, target: float, limits: Limits, *, jog: bool = False) -> None:
         """Another job for an axis in motion: to `target`, endless for ±infinity; a `jog` only another one may change.
 
-        Until it goes towards its target, the axis brakes with A- and J of its motion until now where these are larger.
-        Raises CncError 23001 and 23002 for limits and targets that no table can be made for; then nothing is changed.
+        If its limits would lead past the target, the axis brakes with A- and J of its motion until now where these are
+        larger. Raises CncError 23001 and 23002 for limits and targets that no table can be made for; then nothing is
+        changed.
         """
         check_limits(limits)
-        ramp = None if isinf(target) else stronger(limits, self._ramp_limits)
+        start = self._start(cycle)
+        past = not isinf(target) and leads_past(*start, target, limits)
+        ramp = stronger(limits, self._ramp_limits) if past else None
         job = replace(self._job_in_motion(cycle, target, limits, ramp), jog=jog)
         self._activation = self._due = None
         self._begin(cycle, job, *self._table(cycle, job))
