@@ -7,6 +7,7 @@ from math import copysign, isfinite, sqrt
 from typing import NoReturn
 
 from cnc_ptp.axis import transitions as T
+from cnc_ptp.axis.added_motion import AddedMotion
 from cnc_ptp.axis.carried import CarriedMotion
 from cnc_ptp.axis.command_checks import MotionChecks
 from cnc_ptp.axis.compensation import Compensation
@@ -28,6 +29,7 @@ from cnc_ptp.motion.setpoints import MotionState, Setpoints
 from cnc_ptp.parameters import AxisParameters
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import StatusBit
+from cnc_ptp.protocol.jobs import Jobs, JobStatus
 from cnc_ptp.protocol.transitions import Transition, require_source
 from cnc_ptp.protocol.unit import EMERGENCY_STOP
 
@@ -38,6 +40,9 @@ PAIR_ERRORS = (FEED_WITHHELD, GANTRY_DIFFERENCE, GROUP_ERROR, EMERGENCY_STOP)
 ROUNDING = 1e-9
 """Part of a velocity limit."""
 
+KEEPING_TARGET = (S.STANDSTILL, S.DISCRETE_MOTION, S.STOPPING)
+"""States in which the target of the last positioning still counts for move_additive."""
+
 Report = Callable[[int, int, str], None]
 """Takes an event: cycle, number, text."""
 
@@ -45,15 +50,15 @@ Report = Callable[[int, int, str], None]
 class Axis:
     """The setpoint side of an axis. Commands (one class per group) change it, the unit around it computes cycles.
 
-    The setpoint is the basic motion (PTP generator, path, master) plus what a compensation, external setpoints and a
-    flying saw on a path add. Every fault ends in ErrorStop on the axis' own ramp (P-AXIS-00002 and the ramp time
-    P-AXIS-00196), or on that of the active motion where this is stronger.
+    The setpoint is the basic motion (PTP generator, path, master) plus what a compensation, external setpoints, a
+    superimposed motion (`added`) and a flying saw on a path add. Every fault ends in ErrorStop on the axis' own ramp
+    (P-AXIS-00002 and the ramp time P-AXIS-00196), or on that of the active motion where this is stronger.
     """
 
     def __init__(
-        self, parameters: AxisParameters, *, cycle_time: float, report_error: Report, report_warning: Report
+        self, parameters: AxisParameters, *, cycle_time: float, jobs: Jobs, report_error: Report, report_warning: Report
     ) -> None:
-        """`cycle_time` in s; the reports take faults and warnings as events."""
+        """`cycle_time` in s; `jobs` of its unit; the reports take faults and warnings as events."""
         self.parameters = parameters
         self.name = parameters.name
         self.unit = "deg" if parameters.rotary else "mm"
@@ -68,6 +73,7 @@ class Axis:
             dead_time=parameters.external_dead_time,
             limits=self.own_limits._replace(velocity=parameters.max_velocity),
         )
+        self.added = AddedMotion(cycle_time=cycle_time)
         self.superposed = False
         """Something is added to the basic motion."""
         self.override_filter = OverrideFilter(
@@ -83,6 +89,11 @@ class Axis:
         self.lead = DriveLead()
         """A drive that homes the axis on its own."""
         self.slaves: set[str] = set()
+        self.jobs = jobs
+        self.waiting_job = 0
+        """Number of the job that waits for the end of the active one, or of a stop; 0: none waits."""
+        self.last_target: float | None = None
+        """Target of the last positioning, whatever has become of it; None when there has been another motion since."""
         self.powered = parameters.powered_at_start
         self.state = S.STANDSTILL if self.powered else S.DISABLED
         self.error_id = 0
@@ -120,16 +131,15 @@ class Axis:
         """The basic motion at `cycle` with everything that is superimposed."""
         if not self.superposed:
             return base
-        p, v, a, j = self.external.at(cycle, self.compensation.at(cycle, base))
-        if self.carried is None:
-            return p, v, a, j
-        position, velocity, acceleration, jerk = self.carried.state(cycle)
-        return p + position, v + velocity, a + acceleration, j + jerk
+        state = self.external.at(cycle, self.compensation.at(cycle, base))
+        if self.added.active:
+            state = plus(state, self.added.state(cycle))
+        return state if self.carried is None else plus(state, self.carried.state(cycle))
 
     def shift(self, cycle: int) -> float:
         """Lasting offset of the axis from its basic motion, mm (deg); targets of the axis have it too."""
         self.setpoint(cycle)
-        return self.compensation.offset + self.external.zero(cycle)
+        return self.compensation.offset + self.external.zero(cycle) + self.added.offset
 
     def moving(self, cycle: int) -> bool:
         return self.superposition_moves(cycle) or not self.rests(cycle)
@@ -139,19 +149,23 @@ class Axis:
         return self.ptp.finished(cycle) and not self.lead.active
 
     def superposition_moves(self, cycle: int) -> bool:
-        """Compensation or external setpoints move the axis in addition to its basic motion."""
-        return self.superposed and (self.compensation.moving or self.external.moving(cycle))
+        """Something moves the axis in addition to its basic motion."""
+        moves = self.compensation.moving or self.external.moving(cycle) or self.added.moving(cycle)
+        return self.superposed and moves
 
     def absorb(self, cycle: int) -> None:
-        """The basic motion takes over what compensation and external setpoints have added; both end.
+        """The basic motion takes over what is superimposed on it, which ends.
 
-        Their acceleration is not limited in jerk and ends here: on a jerk-limited ramp it would raise the velocity
-        further.
+        The acceleration of compensation and external setpoints is not limited in jerk and ends here: on a jerk-limited
+        ramp it would raise the velocity further.
         """
         if self.superposed:
             position, velocity, _, _ = self.setpoint(cycle)
-            self.ptp.take_over(cycle, position, velocity, self._bearable(velocity, self.ptp.state(cycle)[2]))
-            self._end_superposition()
+            acceleration = self.ptp.state(cycle)[2]
+            if self.added.active:
+                acceleration += self.added.state(cycle)[2]
+            self.ptp.take_over(cycle, position, velocity, self._bearable(velocity, acceleration))
+            self._end_superposition(cycle)
 
     def _bearable(self, velocity: float, acceleration: float) -> float:
         """The part of an acceleration to be ramped down: a²/2J must not lead above P-AXIS-00212, or through 0.
@@ -173,7 +187,7 @@ class Axis:
             own = 0.0 if self.state == S.SYNCHRONIZED_MOTION else self.ptp.state(cycle)[2]
             acceleration = self._bearable(velocity, own)
         self.ptp.take_over(cycle, position, velocity, acceleration)
-        self._end_superposition()
+        self._end_superposition(cycle)
         self.ptp.stop(cycle, self.own_limits, at_least=True)
 
     def leave_master(self, cycle: int) -> None:
@@ -187,16 +201,40 @@ class Axis:
     def place(self, cycle: int, position: float) -> None:
         """An axis at a standstill without position control was moved to `position`."""
         self.ptp.take_over(cycle, position, 0.0, 0.0)
-        self._end_superposition()
+        self._end_superposition(cycle)
 
-    def _end_superposition(self) -> None:
+    def _end_superposition(self, cycle: int) -> None:
         self.compensation.reset()
         self.external.reset()
+        self.jobs.end_superimposed(cycle, JobStatus.ABORTED)
+        self.added.reset()
+        self.ptp.lift_ceiling(cycle)
         self.carried = None
         self.superposed = False
 
+    def halt_added(self, cycle: int) -> None:
+        """The superimposed motion ends on its ramp; its job is aborted."""
+        self.jobs.end_superimposed(cycle, JobStatus.ABORTED)
+        self.added.halt(cycle)
+
+    def end_added(self, cycle: int) -> None:
+        """The superimposed motion has come to rest at `cycle`: the axis' own basic motion takes its offset over."""
+        if not self.added.active or self.added.moving(cycle):
+            return
+        self.jobs.end_superimposed(cycle, JobStatus.DONE)
+        self.ptp.lift_ceiling(cycle)
+        offset = self.added.offset
+        if self.state == S.SYNCHRONIZED_MOTION or offset == 0.0:
+            return
+        self.ptp.shift(offset)
+        self.added.reset()
+        if self.last_target is not None:
+            self.last_target += offset
+        others = self.compensation.active or self.external.mode is not None or self.external.moving(cycle)
+        self.superposed = others or self.shift(cycle) != 0.0
+
     def stop(self, cycle: int, *, locks: bool = True) -> None:
-        """Basic motion, compensation and external setpoints come to rest, each on its ramp; `locks` as in the PTP.
+        """Basic motion and what is superimposed on it come to rest, each on its ramp; `locks` as in the PTP.
 
         A target that the external setpoints were to reach no longer counts. A drive that leads stops on its own ramp.
         """
@@ -208,6 +246,7 @@ class Axis:
         self.ptp.stop(cycle, self.own_limits, locks=locks)
         self.compensation.stop()
         self.external.disable(cycle)
+        self.halt_added(cycle)
 
     def set_override(self, cycle: int, percent: float) -> bool:
         """Applies an override; False when it does not change the active motion."""
@@ -228,6 +267,8 @@ class Axis:
     def release_feed(self, cycle: int, *, forward: bool, backward: bool) -> None:
         """Releases each direction of motion, or withholds it."""
         self.ptp.release(cycle, forward=forward, backward=backward)
+        if self.ptp.withholds(self.added.state(cycle)[1]):
+            self.halt_added(cycle)
         if not self.ptp.withholds(self.path_direction):
             self.path_direction = 0.0
 
@@ -244,6 +285,15 @@ class Axis:
         self.has_been_stopped = False
         self.target_window.watch()
 
+    def shift_coordinates(self, distance: float) -> None:
+        """All positions of the axis grow by `distance`; it does not move."""
+        self.ptp.shift(distance)
+        self.checks.shift_coordinates(distance)
+        if self.last_target is not None:
+            self.last_target += distance
+        if self.target_window.target is not None:
+            self.target_window.target += distance
+
     # couplings
 
     @property
@@ -258,6 +308,8 @@ class Axis:
 
     @property
     def has_job(self) -> bool:
+        if self.jobs.superimposed:
+            return True
         return self._master_has_job if self.coupled else self.ptp.job is not None or self.state == S.HOMING
 
     def follow_master(self, target_velocity: float, has_job: bool) -> None:
@@ -279,6 +331,7 @@ class Axis:
         effect = "the axis is at a standstill and not coupled"
         text = f"axis {self.name}: cannot follow {self.coupling.master}: {reason}; {effect}"
         self.coupling = None
+        self.jobs.end(cycle, JobStatus.FAILED, error_id)
         self.take(T.DECOUPLE_AT_REST if self.powered else T.DECOUPLE_WITHOUT_POWER)
         self._report_warning(cycle, error_id, text)
 
@@ -290,10 +343,32 @@ class Axis:
             return self.parameters.error_propagation_delayed
         return self.state == S.DISABLED and self.coupling is None
 
+    # jobs
+
+    def drop_waiting(self, cycle: int) -> None:
+        """A motion, or a new target, that waits will not be carried out."""
+        if self.waiting_job:
+            self.jobs.drop(cycle, self.waiting_job)
+            self.waiting_job = 0
+
+    def abort_job(self, cycle: int) -> None:
+        """Something that is no job stops the axis."""
+        self.drop_waiting(cycle)
+        self.jobs.end(cycle, JobStatus.ABORTED)
+
+    def next_job(self, cycle: int) -> None:
+        """The active job has ended in full; the one that has waited is the active one."""
+        self.jobs.end(cycle, JobStatus.DONE)
+        if self.waiting_job:
+            self.jobs.activate(cycle, self.waiting_job)
+            self.waiting_job = 0
+
     # states
 
     def advance(self, cycle: int) -> None:
         """Carries out what is due at `cycle`: an override that waits in the filter, changes of the basic motion."""
+        if self.state != S.SYNCHRONIZED_MOTION:
+            self.end_added(cycle)
         percent = self.override_filter.due(cycle)
         if percent is not None:
             self.set_override(cycle, percent)
@@ -307,7 +382,11 @@ class Axis:
         if self.state == S.HOMING or self.lead.active:
             return self.ptp.setpoints(cycle, 1)
         due = self.override_filter.due_cycle
-        return self.ptp.setpoints(cycle, count if due is None else max(1, min(count, due - cycle)))
+        if due is not None:
+            count = max(1, min(count, due - cycle))
+        if self.superposed and self.added.moving(cycle):
+            count = min(count, self.added.end_cycle - cycle)
+        return self.ptp.setpoints(cycle, count)
 
     def take(self, transition: Transition) -> None:
         """Changes the state; nothing else does. Every test checks that only transitions of the table are taken."""
@@ -315,6 +394,8 @@ class Axis:
         if self.state == S.HOMING:
             self._end_homing()
         self.state = transition.target
+        if self.state not in KEEPING_TARGET:
+            self.last_target = None
 
     def advance_state(self, cycle: int) -> None:
         """Ends a motion that has finished at `cycle`; a request that waited for the end of a stop has started."""
@@ -323,6 +404,7 @@ class Axis:
         if self.ptp.job is not None and self.state == S.STOPPING:
             self.take(T.NEW_TARGET)
             self.has_been_stopped = False
+            self.next_job(cycle)
         if not self.ptp.arrived(cycle):
             return
         self.compensation.end()
@@ -330,21 +412,32 @@ class Axis:
             return
         if self.jogs_to_limit:
             self._report_limit(cycle)
-        if self.superposed and self.external.mode is not None:
+        if self.superposed and self.added.moving(cycle):
+            self._continue_added(cycle)
+        elif self.superposed and self.external.mode is not None:
+            self.jobs.end(cycle, JobStatus.DONE)
             self._finish(T.CONTINUE_EXTERNALLY)
         elif self.superposed and self.external.moving(cycle):
             self._finish(T.STOP_EXTERNALLY)
         else:
             self._finish(T.FINISH if self.powered else T.FINISH_WITHOUT_POWER)
 
+    def _continue_added(self, cycle: int) -> None:
+        """Only the superimposed motion moves the axis; a stop ends with it, any other motion has ended."""
+        if self.ptp.job is not None or not self.added.halting:
+            self.jobs.end(cycle, JobStatus.DONE)
+            self._finish(T.CONTINUE_SUPERIMPOSED)
+
     @property
     def jogs_to_limit(self) -> bool:
-        """Only a jog has a job with an end in ContinuousMotion: to stop at the soft limit if nothing ends it before."""
+        """Only motion at a velocity has a job with an end in ContinuousMotion: to stop at the soft limit."""
         return self.state == S.CONTINUOUS_MOTION and self.ptp.job is not None and isfinite(self.ptp.job.target)
 
     def _report_limit(self, cycle: int) -> None:
+        """Motion at a velocity has come to rest where it did not want to: its job is aborted."""
+        self.jobs.end(cycle, JobStatus.ABORTED)
         position, rest = self.ptp.state(cycle)[0], self.setpoint(cycle)[0]
-        limit = self.checks.soft_limit(1.0 if position == self.parameters.soft_limit_positive else -1.0)
+        limit = min(map(self.checks.soft_limit, (1.0, -1.0)), key=lambda each: abs(each.position - position))
         now = "the axis is at a standstill" + (f" at {rest:g} {self.unit}" if rest != position else "")
         if self.external.mode is not None or self.superposition_moves(cycle):
             now = "external setpoints move the axis now"
@@ -370,8 +463,10 @@ class Axis:
             bits |= StatusBit.FEED_WITHHELD
         if not self.checks.referenced:
             bits |= StatusBit.NOT_REFERENCED
+        if self.checks.coordinate_shift:
+            bits |= StatusBit.COORDINATES_SHIFTED
         if self.superposed:
-            bits |= StatusBit.COMPENSATING if self.compensation.active else 0
+            bits |= StatusBit.COMPENSATING if self.compensation.active or self.added.moving(cycle) else 0
             bits |= StatusBit.EXT_SETPOINT if self.external.mode is not None else 0
         if self.error_id:
             bits |= StatusBit.ERROR
@@ -394,12 +489,13 @@ class Axis:
         raise self.checks.refusal(command, number, reason, **values)
 
     def fault(self, cycle: int, error_id: int, reason: str, setpoint: MotionState | None = None) -> None:
-        """Error reaction: own ramp from the setpoint of `cycle`, state ErrorStop.
+        """Error reaction: own ramp from the setpoint of `cycle`, state ErrorStop; nothing waits then.
 
         The slave of a gantry pair whose group has an error follows its master to standstill (`end_with_master`).
         `setpoint` within a block, if it comes from another source than the axis' own generator.
         """
         self.error_id = error_id
+        self.drop_waiting(cycle)
         pair = self.pair_in(error_id)
         if pair is not None:
             self._note_propagation(cycle, error_id)
@@ -409,7 +505,7 @@ class Axis:
         if setpoint is not None and self.state == S.SYNCHRONIZED_MOTION:
             position, velocity, acceleration, _ = setpoint
             self.ptp.take_over(cycle, position, velocity, 0.0 if self.superposed else acceleration)
-            self._end_superposition()
+            self._end_superposition(cycle)
         if self.coupled:
             self.leave_master(cycle)
         self.absorb(cycle)
@@ -458,3 +554,8 @@ class Axis:
         self.absorb(cycle)
         self.target_window.forget()
         self.take(T.FAULT)
+
+
+def plus(base: MotionState, added: MotionState) -> MotionState:
+    """The sum of two motions."""
+    return base[0] + added[0], base[1] + added[1], base[2] + added[2], base[3] + added[3]

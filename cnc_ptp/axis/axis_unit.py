@@ -9,6 +9,7 @@ from typing import ClassVar
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.axis_sources import MasterSource, PathSource
 from cnc_ptp.axis.compensation_commands import CompensationCommands
+from cnc_ptp.axis.coordinate_commands import CoordinateCommands
 from cnc_ptp.axis.coupling_commands import CouplingCommands
 from cnc_ptp.axis.decoupling_commands import DecouplingCommands
 from cnc_ptp.axis.drive_homing import DriveHoming
@@ -20,12 +21,14 @@ from cnc_ptp.axis.homing import Homing
 from cnc_ptp.axis.homing_commands import HomingCommands
 from cnc_ptp.axis.jog_commands import JogCommands
 from cnc_ptp.axis.monitoring import MOVING_ALONE, Monitoring
+from cnc_ptp.axis.motion_queue import MotionQueue
 from cnc_ptp.axis.override_commands import OverrideCommands
 from cnc_ptp.axis.parameter_commands import ParameterCommands
 from cnc_ptp.axis.power_commands import PowerCommands
 from cnc_ptp.axis.probe import Probe
 from cnc_ptp.axis.ptp_commands import PtpCommands
 from cnc_ptp.axis.stop_commands import StopCommands
+from cnc_ptp.axis.superimposed_commands import SuperimposedCommands
 from cnc_ptp.control.commands import FEEDFORWARD_WAITS, ControlCommands, feedforward_warning
 from cnc_ptp.control.control_loop import ControlColumns, ControlLoop
 from cnc_ptp.control.drives import Drive, make_drive
@@ -36,6 +39,7 @@ from cnc_ptp.parameters import AxisParameters
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import StatusBit
 from cnc_ptp.protocol.blocks import AxisBlock, Command, CycleBlock, CycleTick, Severity
+from cnc_ptp.protocol.jobs import SUPERIMPOSED, JobStatus
 from cnc_ptp.protocol.unit import UPSTREAM_LOST, Handler, Unit
 
 ADDITIONS = ("external_enable", "external_disable")
@@ -63,8 +67,13 @@ class AxisUnit(Unit):
         """`cycle_time` in s; without `drive` the simulated one of the parameters is used; `axes` of the machine."""
         super().__init__(parameters.name)
         self._axis = Axis(
-            parameters, cycle_time=cycle_time, report_error=self._report_error, report_warning=self._report_warning
+            parameters,
+            cycle_time=cycle_time,
+            jobs=self.jobs,
+            report_error=self._report_error,
+            report_warning=self._report_warning,
         )
+        self._queue = MotionQueue(self._axis, cycle_time=cycle_time, report_warning=self._report_warning)
         self._monitoring = Monitoring(self._axis, cycle_time=cycle_time, report_warning=self._report_warning)
         self._loop = ControlLoop(
             parameters.control,
@@ -93,10 +102,12 @@ class AxisUnit(Unit):
             self,
             PowerCommands(self._axis, actual_position=lambda: self._loop.position),
             FeedReleaseCommands(self._axis),
-            PtpCommands(self._axis),
+            PtpCommands(self._axis, self._queue),
             self._override,
             StopCommands(self._axis),
-            JogCommands(self._axis),
+            JogCommands(self._axis, self._queue),
+            SuperimposedCommands(self._axis, self._queue),
+            CoordinateCommands(self._axis, self._loop, self._queue, self._monitoring),
             HomingCommands(self._axis, self._homing, self._drive_homing),
             DriveParameterCommands(self._axis, self._drive_homing),
             CompensationCommands(self._axis),
@@ -147,10 +158,20 @@ class AxisUnit(Unit):
 
     def begin_job(self, command: Command, cycle: int) -> int:
         """See Unit: the end of a jog where there is none, and what is added to another motion, begin no job."""
-        state = self._axis.state
+        axis, jobs, state = self._axis, self.jobs, self._axis.state
+        if axis.waiting_job == jobs.newest + 1:
+            return jobs.accept()
+        if command.command in SUPERIMPOSED:
+            number = jobs.begin_superimposed(cycle)
+            if not axis.added.moving(cycle):
+                jobs.end_superimposed(cycle, JobStatus.DONE)
+            return number
         ends_no_jog = command.command == "jog" and not command.arguments["velocity"] and not self._axis.has_been_stopped
         added = command.command in ADDITIONS and state in (S.DISCRETE_MOTION, S.SYNCHRONIZED_MOTION)
-        return 0 if ends_no_jog or added else super().begin_job(command, cycle)
+        if ends_no_jog or added:
+            return 0
+        axis.drop_waiting(cycle)
+        return jobs.begin(cycle)
 
     def do_upstream_lost(self, cycle: int, *, source: str) -> str | None:
         """The watchdog: `source` has sent nothing in time; without its channel only an axis on the path stops."""
@@ -181,13 +202,15 @@ class AxisUnit(Unit):
         axis = self._axis
         block = self._make_block(first_cycle, count)
         control = ControlColumns()
-        axis.advance(first_cycle)
+        self._advance(first_cycle)
         setpoints = self._led(first_cycle, inputs)
         if setpoints is not None:
             self._follow(first_cycle, setpoints, block, control)
         while (done := len(block.state)) < count:
-            axis.advance(first_cycle + done)
-            self._follow(first_cycle + done, axis.basic_motion(first_cycle + done, count - done), block, control)
+            cycle = first_cycle + done
+            self._advance(cycle)
+            most = self._queue.cycles(cycle, count - done)
+            self._follow(cycle, axis.basic_motion(cycle, most), block, control)
         take_columns(block, control)
         self._probe.watch(block, self._loop.offset)
         warning = feedforward_warning(self._loop.feedforward, block.set_velocity[-1], axis.unit)
@@ -197,6 +220,11 @@ class AxisUnit(Unit):
         block.target_velocity, block.couples_actual = axis.target_velocity(), axis.couples_actual()
         self._last_block = block
         return block
+
+    def _advance(self, cycle: int) -> None:
+        """Carries out what is due at `cycle`."""
+        self._axis.advance(cycle)
+        self._queue.advance(cycle)
 
     def _led(self, first_cycle: int, inputs: Mapping[str, CycleBlock]) -> Setpoints | None:
         """Setpoints of a master or of a channel, None if its own generator moves the axis."""
@@ -259,6 +287,7 @@ class AxisUnit(Unit):
     def _cycle(self, cycle: int, base: MotionState, block: AxisBlock, control: ControlColumns) -> None:
         """Adds one cycle, in which anything can happen."""
         axis, loop = self._axis, self._loop
+        axis.end_added(cycle)
         setpoint = axis.superimposed(cycle, base)
         if axis.lead.active:
             setpoint = self._drive_homing.watch(cycle)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import copysign, inf
+from math import copysign, inf, isfinite
 from typing import NamedTuple
 
 from cnc_ptp.axis.faults import (
@@ -19,6 +19,9 @@ from cnc_ptp.errors import CncError, Value, warning_text
 from cnc_ptp.motion import Limits
 from cnc_ptp.motion.limits import LARGEST_STATE, OUT_OF_RANGE, SMALLEST_LIMIT
 from cnc_ptp.parameters import AxisParameters
+
+NEGLIGIBLE_SHIFT = 1e-9
+"""mm (deg): what rounding leaves of a shift that was taken back."""
 
 
 class SoftLimit(NamedTuple):
@@ -42,6 +45,8 @@ class MotionChecks:
         negative_text = f"negative soft limit {negative} {self._unit} (P-AXIS-00177)"
         self._positive_limit = SoftLimit(positive, SOFT_LIMIT_POSITIVE, positive_text)
         self._negative_limit = SoftLimit(negative, SOFT_LIMIT_NEGATIVE, negative_text)
+        self.coordinate_shift = 0.0
+        """By how much set_position has moved the coordinates of the axis against those of the machine, mm (deg)."""
         self.referenced = parameters.referenced_at_start
         """The coordinates of the axis are those of the machine; without that there are no soft limits."""
 
@@ -111,7 +116,22 @@ class MotionChecks:
     def soft_limit(self, direction: float) -> SoftLimit:
         """The soft limit in this direction of motion (> 0: positive); infinity until the axis is referenced."""
         limit = self._positive_limit if direction > 0.0 else self._negative_limit
-        return limit if self.referenced else limit._replace(position=copysign(inf, direction))
+        if not self.referenced:
+            return limit._replace(position=copysign(inf, direction))
+        if self.coordinate_shift and isfinite(limit.position):
+            return self._shifted(limit)
+        return limit
+
+    def shift_coordinates(self, distance: float) -> None:
+        """All positions of the axis grow by `distance`; its place on the machine stays."""
+        shift = self.coordinate_shift + distance
+        self.coordinate_shift = shift if abs(shift) > NEGLIGIBLE_SHIFT else 0.0
+
+    def _shifted(self, limit: SoftLimit) -> SoftLimit:
+        """A soft limit stays where it is on the machine (set_position)."""
+        position = limit.position + self.coordinate_shift
+        text = f"{limit.text}, which is at {position} {self._unit} now"
+        return limit._replace(position=position, text=text)
 
     def soft_limits(self, command: str, target: float) -> None:
         """Raises 120002 and 120003 for a target outside, 23002 for one out of range; the start may be anywhere."""

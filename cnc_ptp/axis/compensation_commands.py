@@ -12,10 +12,11 @@ from cnc_ptp.axis.faults import (
     COMPENSATION_IN_STOP,
     COMPENSATION_LOCKED,
     NOTHING_TO_COMPENSATE,
+    SUPERIMPOSED_RUNS,
     VELOCITY_TOO_HIGH,
     VIRTUAL_AXIS,
 )
-from cnc_ptp.axis.ptp import Job
+from cnc_ptp.axis.job import Job
 from cnc_ptp.errors import warning_text
 from cnc_ptp.motion import Profile
 from cnc_ptp.motion.limits import LARGEST_LIMIT, SMALLEST_LIMIT
@@ -79,6 +80,8 @@ class CompensationCommands:
             axis.refuse(START, VIRTUAL_AXIS, "a virtual axis cannot compensate (P-AXIS-00020)")
         if axis.compensation.active:
             axis.refuse(START, COMPENSATION_LOCKED, "a position compensation is active; it cannot be started again")
+        if axis.added.moving(cycle):
+            axis.refuse(START, SUPERIMPOSED_RUNS, "a superimposed motion is active")
         if axis.coupled and not axis.on_path:
             return
         if axis.state not in (S.DISCRETE_MOTION, S.STOPPING) and axis.ptp.job is None:

@@ -82,6 +82,7 @@ class DecouplingCommands:
             axis.ptp.continue_to(cycle, float(target), limits._replace(velocity=kept))
             axis.target_window.watch()
             axis.take(T.DECOUPLE_TO_TARGET)
+            axis.last_target = float(target)
         elif velocity is not None:
             axis.ptp.continue_to(cycle, copysign(inf, speed), limits)
             axis.take(T.DECOUPLE_IN_MOTION)

@@ -16,6 +16,7 @@ from cnc_ptp.axis.faults import (
     EXTERNAL_MODE,
     EXTERNAL_NOT_ENABLED,
     NOT_READY,
+    SUPERIMPOSED_RUNS,
 )
 from cnc_ptp.errors import warning_text
 from cnc_ptp.parameters.declare import ids
@@ -42,6 +43,8 @@ class ExternalCommands:
         """
         axis = self._axis
         self._check_state(mode)
+        if axis.added.moving(cycle):
+            axis.refuse(ENABLE, SUPERIMPOSED_RUNS, "a superimposed motion is active")
         if axis.on_path:
             self._check_path(mode, target)
         position = axis.setpoint(cycle)[0]

@@ -125,7 +125,7 @@ class Homing:
         position += distance
         axis.ptp.take_over(cycle, position, velocity, acceleration)
         axis.ptp.stop(cycle, axis.own_limits)
-        axis.checks.referenced = True
+        axis.checks.referenced, axis.checks.coordinate_shift = True, 0.0
         self._phase = Phase.END
         return position, velocity, acceleration, jerk
 

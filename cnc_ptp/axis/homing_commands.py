@@ -15,7 +15,7 @@ from cnc_ptp.axis.faults import (
     SERVICE_CHANNEL,
 )
 from cnc_ptp.axis.homing import Homing
-from cnc_ptp.axis.ptp_commands import refuse_other_source
+from cnc_ptp.axis.motions import refuse_other_source
 from cnc_ptp.control.drives.sercos import idns
 from cnc_ptp.control.drives.sercos.service_channel import ServiceChannel, ServiceError
 from cnc_ptp.parameters.view.homing_view import DISABLED, DRIVE_CONTROLLED

@@ -25,6 +25,10 @@ class Monitoring:
         self._before: tuple[int, MotionState] | None = None
         """The last cycle with superimposed motion, and its setpoint."""
 
+    def forget(self) -> None:
+        """The coordinates of the axis have changed."""
+        self._before = None
+
     def undisturbed(self, first_cycle: int, setpoints: Setpoints) -> bool:
         """True when in these cycles of basic motion nothing can happen to state, soft limits and target window.
 
@@ -74,6 +78,8 @@ class Monitoring:
         if axis.coupled:
             return False
         if not axis.superposed or axis.state == S.STOPPING:
+            return True
+        if axis.added.halting and axis.added.moving(cycle):
             return True
         driven = axis.external.mode is not None and axis.ptp.withholds(axis.external.contribution(cycle)[1])
         return not driven and axis.ptp.withholds(axis.ptp.state(cycle)[1])

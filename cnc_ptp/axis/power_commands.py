@@ -45,25 +45,30 @@ class PowerCommands:
         axis = self._axis
         axis.powered = False
         axis.ptp.drop_suspended()
+        axis.drop_waiting(cycle)
         if axis.state == S.STANDSTILL:
             axis.take(T.POWER_OFF)
         elif axis.state == S.SYNCHRONIZED_MOTION:
             what = "path motion" if axis.on_path else "synchronous motion"
             axis.fault(cycle, ENABLE_REMOVED, f"the enable was removed during {what}")
         elif axis.state in STOPPABLE:
-            axis.stop(cycle)
-            axis.take(T.STOP)
-            axis.has_been_stopped = True
+            self._stop(cycle)
+
+    def _stop(self, cycle: int) -> None:
+        axis = self._axis
+        axis.abort_job(cycle)
+        axis.stop(cycle)
+        axis.take(T.STOP)
+        axis.has_been_stopped = True
 
     def do_reset(self, cycle: int) -> None:
         """Leaves ErrorStop; refused while the axis moves (23008). PTP motion and external setpoints are aborted."""
         axis = self._axis
         if axis.state in STOPPABLE:
-            axis.stop(cycle)
-            axis.take(T.STOP)
-            axis.has_been_stopped = True
+            self._stop(cycle)
         if axis.on_path:
             axis.external.disable(cycle)
+            axis.halt_added(cycle)
         if axis.state != S.ERROR_STOP:
             return
         if not axis.rests(cycle):

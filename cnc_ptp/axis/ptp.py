@@ -5,21 +5,22 @@ from __future__ import annotations
 import sys
 from bisect import bisect_left
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import ceil, copysign, inf, isinf
 
+from cnc_ptp.axis.job import Activation, Job, Start, planned, stronger
 from cnc_ptp.axis.tables import last_leg, peak_velocity, reaches, standing
 from cnc_ptp.axis.two_stage import Request, Stage, velocity_stage
 from cnc_ptp.motion import (
     Limits,
     Profile,
     plan_rest_to_rest,
-    plan_to_position,
     plan_to_velocity,
 )
 from cnc_ptp.motion.limits import SMALLEST_LIMIT, check_limit, check_limits, check_state, rounding
 from cnc_ptp.motion.profile import Segment
 from cnc_ptp.motion.setpoints import MotionState, Setpoints
+from cnc_ptp.motion.to_position import leads_past
 
 NEGLIGIBLE = 1e-9
 """mm, mm/s (deg, deg/s): smaller values have no direction."""
@@ -32,28 +33,6 @@ INSTANT = 1e-9
 
 REDUCTIONS = 8
 """Steps of the bisection that brings an unreachable new velocity nearer to the old one (TX1250 2.4)."""
-
-
-@dataclass(frozen=True, slots=True)
-class Job:
-    """A positioning: its target, its limits, and the velocity that its last part can reach within them.
-
-    The velocity of the limits is the commanded one; it may become reachable with a new target.
-    A target at ±infinity is endless motion in that direction.
-    """
-
-    target: float
-    limits: Limits
-    reduced_velocity: float
-
-
-@dataclass(frozen=True, slots=True)
-class Activation:
-    """A new velocity (mm/s) that becomes active when the axis passes `position` in `direction`."""
-
-    position: float
-    direction: float
-    velocity: float
 
 
 class PtpGenerator:
@@ -81,6 +60,8 @@ class PtpGenerator:
         self.override = 1.0
         self._forward = self._backward = True
         self._waits_for_release = False
+        self.ceiling = inf
+        """Largest velocity (mm/s, deg/s) of a job while something is superimposed."""
 
     # feed releases
 
@@ -106,21 +87,28 @@ class PtpGenerator:
         if job is None or self._in_brake_phase(cycle, job):
             return
         if self._must_wait(cycle, job) != self._waits_for_release:
-            self._lead(cycle, job, self._table(cycle, job))
+            self._lead(cycle, job, *self._table(cycle, job))
 
     def _must_wait(self, cycle: int, job: Job) -> bool:
         """True if a stop would bring the axis to rest where the target is in a withheld direction."""
         if not self.restricted:
             return False
-        position, velocity, acceleration, _ = self.state(cycle)
-        return self.withholds(job.target - plan_to_velocity(position, velocity, acceleration, 0.0, job.limits).end[0])
+        if job.through:
+            return self.withholds(job.through)
+        stop = plan_to_velocity(*self.state(cycle)[:3], 0.0, self._braking(cycle, job))
+        return self.withholds(job.target - stop.end[0])
 
-    def _lead(self, cycle: int, job: Job, table: Profile) -> None:
+    def _braking(self, cycle: int, job: Job) -> Limits:
+        """The limits with whose A- and J the active job brakes at `cycle`."""
+        return job.limits if job.ramp is None else planned(self.state(cycle)[:3], job.target, job.limits, job.ramp)[1]
+
+    def _lead(self, cycle: int, job: Job, table: Profile, limits: Limits) -> None:
         """Sets the table of the active job, or the ramp to standstill if it must wait."""
         self._waits_for_release = self._must_wait(cycle, job)
         if self._waits_for_release:
-            table = plan_to_velocity(*self.state(cycle)[:3], 0.0, job.limits)
-        self._set(cycle, table, job.limits)
+            limits = self._braking(cycle, job)
+            table = plan_to_velocity(*self.state(cycle)[:3], 0.0, limits)
+        self._set(cycle, table, limits)
 
     # setpoints
 
@@ -158,21 +146,52 @@ class PtpGenerator:
         return 0.0 if self.job is None else self._full_velocity(self.job)
 
     @property
+    def rest(self) -> float:
+        """Where the active positioning, or the ramp of a stop, ends."""
+        return self._profile.end[0] if self.job is None else self.job.target
+
+    @property
     def can_redirect(self) -> bool:
         """True while there is a positioning, or a stop of one, that can be given a new target."""
         return self.job is not None or self._stopped_job is not None
+
+    def handover(self, cycle: int, *, in_velocity: bool) -> int | None:
+        """The first cycle from `cycle` on in which another motion may follow; None while the axis is held.
+
+        `in_velocity`: already when the job has its velocity, otherwise only at its end.
+        """
+        job = self.job
+        if job is None:
+            return max(cycle, self._end_cycle())
+        if job.through:
+            return self._crossing(cycle, Activation(job.target, copysign(1.0, job.through), 0.0))
+        constant = self._constant_from(cycle, self._level(job).velocity) if in_velocity else None
+        if constant is None and self._ends_at(job):
+            return max(cycle, self._end_cycle())
+        return constant
+
+    def _constant_from(self, cycle: int, velocity: float) -> int | None:
+        """The first cycle from `cycle` on that has this constant speed; None if none has."""
+        rows = self._profile.rows
+        for (t, _, v, a, j), end in zip(rows, [*self._profile.starts[1:], inf], strict=True):
+            if a == j == 0.0 and abs(abs(v) - velocity) <= NEGLIGIBLE * velocity:
+                first = max(cycle, self._origin + ceil(t / self._cycle_time))
+                if (first - self._origin) * self._cycle_time < end:
+                    return first
+        return None
 
     def brakes_to(self, cycle: int, target: float) -> bool:
         """True in the brake phase of a job to `target`, in which nothing can be changed."""
         return self.job is not None and self.job.target == target and self._in_brake_phase(cycle, self.job)
 
-    def halts(self, job: Job | None) -> bool:
-        """True while the axis is on the ramp that has ended `job`."""
-        return job is not None and self.job is None and self._stopped_job is job
+    @property
+    def halts_jog(self) -> bool:
+        """True while the axis is on the ramp that has ended a jog."""
+        return self.job is None and self._stopped_job is not None and self._stopped_job.jog
 
     def highest_velocity(self, cycle: int) -> float:
         """The largest |v| (mm/s) that the active positioning may still reach, including a pending new velocity."""
-        limits = [] if self.job is None else [self.job.reduced_velocity]
+        limits = [] if self.job is None else [self.job.reduced_velocity, abs(self.job.through)]
         coming = [] if self._activation is None else [self._activation.velocity]
         return max([abs(self.state(cycle)[1]), *limits, *coming])
 
@@ -185,7 +204,7 @@ class PtpGenerator:
         """
         check_limits(limits)
         job = self._job_from_rest(self.state(cycle)[0], target, limits)
-        self._begin(cycle, job, self._table(cycle, job))
+        self._begin(cycle, job, *self._table(cycle, job))
 
     def continue_at(self, cycle: int, full_velocity: float, limits: Limits) -> None:
         """Continues endlessly with the velocity left when the acceleration is taken out; 0 ends at a standstill.
@@ -199,21 +218,55 @@ class PtpGenerator:
             self._set(cycle, plan_to_velocity(position, velocity, acceleration, 0.0, limits), limits)
             return
         job = Job(copysign(inf, left), limits._replace(velocity=full_velocity), full_velocity)
-        self._begin(cycle, job, plan_to_velocity(position, velocity, acceleration, left, limits))
+        self._begin(cycle, job, plan_to_velocity(position, velocity, acceleration, left, limits), job.limits)
 
     def _blur(self, jerk: float, own_jerk: float) -> float:
         """Velocity (mm/s) that a master's last ramp seems to leave because it ends within a cycle, not at its start."""
         most = max(abs(jerk), own_jerk)
         return 0.5 * most * self._cycle_time**2 * (1.0 + most / own_jerk)
 
-    def continue_to(self, cycle: int, target: float, limits: Limits) -> None:
-        """A job for an axis that moves without one: to `target`, endless for ±infinity.
+    def continue_to(self, cycle: int, target: float, limits: Limits, *, jog: bool = False) -> None:
+        """Another job for an axis in motion: to `target`, endless for ±infinity; a `jog` only another one may change.
 
-        Raises CncError 23001 and 23002 for limits and targets that no table can be made for; then nothing is changed.
+        If its limits would lead past the target, the axis brakes with A- and J of its motion until now where these are
+        larger. Raises CncError 23001 and 23002 for limits and targets that no table can be made for; then nothing is
+        changed.
         """
         check_limits(limits)
-        job = self._job_in_motion(cycle, target, limits)
-        self._begin(cycle, job, self._table(cycle, job))
+        start = self._start(cycle)
+        past = not isinf(target) and leads_past(*start, target, limits)
+        ramp = stronger(limits, self._ramp_limits) if past else None
+        job = replace(self._job_in_motion(cycle, target, limits, ramp), jog=jog)
+        self._activation = self._due = None
+        self._begin(cycle, job, *self._table(cycle, job))
+
+    def pass_through(self, cycle: int, velocity: float) -> None:
+        """The active positioning passes its target with the signed `velocity` (mm/s), as far as it can reach that.
+
+        What comes then is up to `continue_to` in the cycle `handover`.
+        """
+        assert self.job is not None
+        job = replace(self.job, through=velocity)
+        self._begin(cycle, job, *self._table(cycle, job))
+
+    def lift_ceiling(self, cycle: int) -> None:
+        """Nothing is superimposed from now on: the job has its own velocity again."""
+        limited = self.ceiling < inf
+        self.ceiling = inf
+        job = self.job
+        if limited and job is not None and not self._in_brake_phase(cycle, job):
+            self._lead(cycle, job, *self._table(cycle, job))
+
+    def shift(self, distance: float) -> None:
+        """All coordinates grow by `distance`; the motion is the same."""
+        self._profile = Profile([(t, p + distance, v, a, j) for t, p, v, a, j in self._profile.rows])
+        self.job = None if self.job is None else self.job.shifted(distance)
+        self._stopped_job = None if self._stopped_job is None else self._stopped_job.shifted(distance)
+        if self._suspended is not None:
+            target, velocity, activation = self._suspended
+            self._suspended = Request(target + distance, velocity, activation + distance)
+        if self._activation is not None:
+            self._activation = replace(self._activation, position=self._activation.position + distance)
 
     def set_override(self, cycle: int, ratio: float) -> bool:
         """Takes over an override of 0.0 to 1.0; False when it only counts for the next start.
@@ -226,10 +279,10 @@ class PtpGenerator:
         job = self.job
         if job is None or self._in_brake_phase(cycle, job):
             return False
-        table = self._table(cycle, job)
+        table, limits = self._table(cycle, job)
         if self._level_is_missed(cycle, job, table):
             return False
-        self._lead(cycle, job, table)
+        self._lead(cycle, job, table, limits)
         return True
 
     def stop(self, cycle: int, limits: Limits, *, at_least: bool = False, locks: bool = True) -> None:
@@ -239,6 +292,8 @@ class PtpGenerator:
         wait until the axis is at a standstill (a stop); without it they act immediately (a halt).
         """
         ramp = self._ramp_limits or limits
+        if self.job is not None and self.job.ramp is not None:
+            ramp = self._braking(cycle, self.job)
         if at_least:
             ramp = Limits(*map(max, ramp, limits))
         brakes = self._is_stop_ramp() if self.job is None else self._in_brake_phase(cycle, self.job)
@@ -296,9 +351,9 @@ class PtpGenerator:
 
     # tables
 
-    def _begin(self, cycle: int, job: Job, table: Profile) -> None:
+    def _begin(self, cycle: int, job: Job, table: Profile, limits: Limits) -> None:
         self.job, self._stopped_job = job, None
-        self._lead(cycle, job, table)
+        self._lead(cycle, job, table, limits)
 
     def _set(self, cycle: int, profile: Profile, limits: Limits | None) -> None:
         self._origin = cycle
@@ -320,7 +375,7 @@ class PtpGenerator:
         """For a table without a job: it comes to rest; one that was taken over in motion does not."""
         return self._profile.end[1:] == (0.0, 0.0)
 
-    def _start(self, cycle: int) -> tuple[float, float, float]:
+    def _start(self, cycle: int) -> Start:
         """Position, velocity and acceleration from which a new table starts.
 
         In the last jerk phase before standstill the velocity is exactly the one that this phase takes out, so that no
@@ -336,7 +391,7 @@ class PtpGenerator:
     def passes_by(self, cycle: int, job: Job) -> float:
         """How far (mm, deg) beyond the target of `job`, in the direction of motion, a stop would end; at least 0."""
         position, velocity, acceleration, _ = self.state(cycle)
-        ahead = plan_to_velocity(position, velocity, acceleration, 0.0, job.limits).end[0]
+        ahead = plan_to_velocity(position, velocity, acceleration, 0.0, self._braking(cycle, job)).end[0]
         behind = copysign(1.0, velocity) * (ahead - job.target)
         return 0.0 if abs(behind) <= abs(velocity) * INSTANT + rounding(position, job.target) else behind
 
@@ -345,7 +400,7 @@ class PtpGenerator:
 
         Without a segment of constant velocity this begins before the velocity falls, as soon as the acceleration does.
         """
-        if not self._ends_at(job):
+        if job.through or not self._ends_at(job):
             return False
         position, velocity, acceleration, _ = self.state(cycle)
         if velocity == 0.0 and acceleration == 0.0:
@@ -355,36 +410,38 @@ class PtpGenerator:
     def _job_from_rest(self, position: float, target: float, limits: Limits) -> Job:
         return self._job_of(target, limits, plan_rest_to_rest(position, target, limits).rows)
 
-    def _job_in_motion(self, cycle: int, target: float, limits: Limits) -> Job:
+    def _job_in_motion(self, cycle: int, target: float, limits: Limits, ramp: Limits | None = None) -> Job:
         """The job to `target` for an axis in motion; if it stops and returns, its return counts."""
         if isinf(target):
             return Job(target, limits, limits.velocity)
-        leg = last_leg(plan_to_position(*self._start(cycle), target, limits))
+        leg = last_leg(planned(self._start(cycle), target, limits, ramp)[0])
         if leg[0][2] == 0.0 and leg[0][3] == 0.0:
-            return self._job_from_rest(leg[0][1], target, limits)
-        return self._job_of(target, limits, leg)
+            return replace(self._job_from_rest(leg[0][1], target, limits), ramp=ramp)
+        return replace(self._job_of(target, limits, leg), ramp=ramp)
 
     def _job_of(self, target: float, limits: Limits, leg: Sequence[Segment]) -> Job:
         return Job(target, limits, min(limits.velocity, peak_velocity(leg)))
 
     def _level(self, job: Job) -> Limits:
         """Limits with the velocity of the override; at least the smallest for which tables can be made."""
-        return job.limits._replace(velocity=max(self._full_velocity(job) * self.override, SMALLEST_LIMIT))
+        velocity = min(self._full_velocity(job) * self.override, self.ceiling)
+        return job.limits._replace(velocity=max(velocity, SMALLEST_LIMIT))
 
     def _full_velocity(self, job: Job) -> float:
         return job.limits.velocity if self.override_type in (2, 4) else job.reduced_velocity
 
-    def _table(self, cycle: int, job: Job) -> Profile:
-        """The table to the target at the velocity of the override; with override 0 to standstill."""
-        position, velocity, acceleration = self._start(cycle)
+    def _table(self, cycle: int, job: Job) -> tuple[Profile, Limits]:
+        """The table to the target at the velocity of the override, and the limits of its first part.
+
+        With override 0 it leads to standstill.
+        """
+        start, level = self._start(cycle), self._level(job)
         if self.override == 0.0:
-            return plan_to_velocity(position, velocity, acceleration, 0.0, job.limits)
+            limits = self._braking(cycle, job)
+            return plan_to_velocity(*start, 0.0, limits), limits
         if isinf(job.target):
-            level = copysign(self._level(job).velocity, job.target)
-            return plan_to_velocity(position, velocity, acceleration, level, job.limits)
-        if velocity == 0.0 and acceleration == 0.0:
-            return plan_rest_to_rest(position, job.target, self._level(job))
-        return plan_to_position(position, velocity, acceleration, job.target, self._level(job))
+            return plan_to_velocity(*start, copysign(level.velocity, job.target), job.limits), job.limits
+        return job.table(start, level, min(abs(job.through) * self.override, self.ceiling))
 
     def _level_is_missed(self, cycle: int, job: Job, table: Profile) -> bool:
         """The active table leads to the target, and the new one does not reach its level.
@@ -392,7 +449,7 @@ class PtpGenerator:
         Override types 3 and 4 take what can be reached instead, unless the axis would have to slow down to the level:
         it would brake for the level and then for the target, later and harder than with the table that it has.
         """
-        if self.override == 0.0 or not self._ends_at(job):
+        if self.override == 0.0 or job.through or not self._ends_at(job):
             return False
         _, velocity, acceleration, _ = self.state(cycle)
         if (velocity == 0.0 and acceleration == 0.0) or reaches(table, self._level(job).velocity):
@@ -415,12 +472,12 @@ class PtpGenerator:
         goal = request.target if self.job is None else self.job.target
         direction = copysign(1.0, velocity or goal - position)
         self._activation = self._due = None
-        job = self._job_in_motion(cycle, request.target, before.limits)
-        leg = last_leg(plan_to_position(*self._start(cycle), request.target, before.limits))
+        job = self._job_in_motion(cycle, request.target, before.limits, before.ramp)
+        leg = last_leg(planned(self._start(cycle), request.target, before.limits, before.ramp)[0])
         returns = velocity != 0.0 and leg[0][2] == 0.0
         if returns and request.velocity is not None and request.velocity <= job.reduced_velocity < job.limits.velocity:
             job = replace(job, limits=job.limits._replace(velocity=request.velocity), reduced_velocity=request.velocity)
-        self._begin(cycle, job, self._table(cycle, job))
+        self._begin(cycle, job, *self._table(cycle, job))
         if request.velocity is not None and not returns:
             self._stage_velocity(cycle, job, velocity_stage(direction, position, request), direction, request)
 
@@ -436,9 +493,9 @@ class PtpGenerator:
         """Takes the new velocity, or the nearest one that the distance to go permits; else the old table is kept."""
         reached = self._nearest_reached(cycle, job, velocity)
         if reached is not None:
-            reduced = self._job_in_motion(cycle, job.target, job.limits._replace(velocity=reached))
+            reduced = self._job_in_motion(cycle, job.target, job.limits._replace(velocity=reached), job.ramp)
             wanted = replace(reduced, limits=job.limits._replace(velocity=velocity))
-            self._begin(cycle, wanted, self._table(cycle, reduced))
+            self._begin(cycle, wanted, *self._table(cycle, reduced))
 
     def _nearest_reached(self, cycle: int, job: Job, velocity: float) -> float | None:
         """`velocity` if the distance to go has a segment at it, else by bisection towards the old one; None if none."""
@@ -459,7 +516,7 @@ class PtpGenerator:
             return True
         level = velocity * (self.override or 1.0)
         limits = job.limits._replace(velocity=max(level, SMALLEST_LIMIT))
-        return reaches(plan_to_position(*self._start(cycle), job.target, limits), limits.velocity)
+        return reaches(planned(self._start(cycle), job.target, limits, job.ramp)[0], limits.velocity)
 
     def _crossing(self, cycle: int, activation: Activation) -> int | None:
         """The first cycle at which the active table is at or past the activation position, None when it never is."""

@@ -1,87 +1,73 @@
-"""PTP functions of an axis: start, new target, new velocity. Source: TX1250 2.1, 2.3, 2.4."""
+"""PTP functions of an axis: start, new target, new velocity. Source: TX1250 2.1, 2.3, 2.4; PLCopen buffer modes."""
 
 from __future__ import annotations
 
 from cnc_ptp.axis import transitions as T
 from cnc_ptp.axis.axis import Axis
-from cnc_ptp.axis.faults import (
-    BELOW_INCREMENT,
-    COMPENSATION_RUNS,
-    NO_MODULO_AXIS,
-    NO_POSITIONING,
-    NOT_READY,
-    SLAVE_LOCKED,
-    START_BESIDE_EXTERNAL,
-)
-from cnc_ptp.axis.modulo import modulo_target
+from cnc_ptp.axis.faults import BAD_DYNAMICS, COMPENSATION_RUNS, NO_MODULO_AXIS, NO_POSITIONING, NOT_READY
+from cnc_ptp.axis.motion_queue import MotionQueue
+from cnc_ptp.axis.motions import AtVelocity, ByDistance, ToModulo, ToTarget
 from cnc_ptp.axis.two_stage import Request
-from cnc_ptp.errors import warning_text
+from cnc_ptp.motion import Limits
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import state_name
 
 REDIRECTABLE = (S.DISCRETE_MOTION, S.CONTINUOUS_MOTION, S.STOPPING)
 
 
-def refuse_other_source(axis: Axis, command: str) -> None:
-    """Raises 23027 and 23040 if external setpoints or a master move the axis."""
-    if axis.external.mode is not None:
-        reason = "external setpoints are enabled; a PTP start is not permitted at the same time"
-        axis.refuse(command, START_BESIDE_EXTERNAL, reason)
-    if axis.coupled and axis.coupling is not None:
-        reason = f"the axis is a slave of {axis.coupling.master}; decouple it"
-        axis.refuse(command, SLAVE_LOCKED, reason, master=axis.coupling.master)
-
-
 class PtpCommands:
-    """Commands that start and change a positioning; each is refused as a whole or carried out."""
+    """Commands that start and change a motion; each is refused as a whole or carried out."""
 
-    def __init__(self, axis: Axis) -> None:
+    def __init__(self, axis: Axis, queue: MotionQueue) -> None:
         self._axis = axis
+        self._queue = queue
 
-    # start (2.1)
+    # start (2.1); `buffer_mode` says what becomes of an active motion (MotionQueue)
 
-    def do_move_absolute(self, cycle: int, *, target: float, **dynamics: float) -> str | None:
-        """Starts to `target` (mm, deg). Refusals: 23003–23005, 23011, 23013, 23027, 120002, 120003."""
-        return self._start("move_absolute", cycle, float(target), dynamics)
+    def do_move_absolute(self, cycle: int, *, target: float, buffer_mode: str = "", **dynamics: float) -> str | None:
+        """Starts to `target` (mm, deg). Refusals: 23003–23005, 23011, 23013, 23015, 23027, 23063, 120002, 120003."""
+        command = "move_absolute"
+        motion = ToTarget(command, *self._limits(command, dynamics), float(target))
+        return self._queue.start(cycle, motion, buffer_mode)
 
-    def do_move_relative(self, cycle: int, *, distance: float, **dynamics: float) -> str | None:
-        """Starts by `distance` (mm, deg) from the set position."""
-        return self._start("move_relative", cycle, self._axis.setpoint(cycle)[0] + distance, dynamics)
+    def do_move_relative(self, cycle: int, *, distance: float, buffer_mode: str = "", **dynamics: float) -> str | None:
+        """Starts by `distance` (mm, deg) from the set position, or from the end of the motion before."""
+        command = "move_relative"
+        motion = ByDistance(command, *self._limits(command, dynamics), float(distance))
+        return self._queue.start(cycle, motion, buffer_mode)
 
-    def do_move_modulo(self, cycle: int, *, position: float, **dynamics: float) -> str | None:
+    def do_move_additive(self, cycle: int, *, distance: float, buffer_mode: str = "", **dynamics: float) -> str | None:
+        """Starts by `distance` (mm, deg) from the target of the last positioning, without one from the set position."""
+        command = "move_additive"
+        motion = ByDistance(command, *self._limits(command, dynamics), float(distance), additive=True)
+        return self._queue.start(cycle, motion, buffer_mode)
+
+    def do_move_modulo(self, cycle: int, *, position: float, buffer_mode: str = "", **dynamics: float) -> str | None:
         """Starts to the modulo position |`position`| (deg), with whole turns; its sign is the direction.
 
         Also refused with 23024 on an axis that does not count modulo.
         """
-        parameters = self._axis.parameters
-        if not parameters.modulo:
-            reason = "the axis does not count modulo (P-AXIS-00015)"
-            self._axis.refuse("move_modulo", NO_MODULO_AXIS, reason)
-        turn = parameters.modulo_high - parameters.modulo_low
-        target = modulo_target(self._axis.setpoint(cycle)[0], float(position), turn)
-        return self._start("move_modulo", cycle, target, dynamics)
+        command = "move_modulo"
+        if not self._axis.parameters.modulo:
+            self._axis.refuse(command, NO_MODULO_AXIS, "the axis does not count modulo (P-AXIS-00015)")
+        motion = ToModulo(command, *self._limits(command, dynamics), float(position))
+        return self._queue.start(cycle, motion, buffer_mode)
 
-    def _start(self, command: str, cycle: int, target: float, dynamics: dict[str, float]) -> str | None:
-        axis = self._axis
-        refuse_other_source(axis, command)
-        if axis.state != S.STANDSTILL:
-            state = state_name(axis.state)
-            axis.refuse(command, NOT_READY, f"the axis is in {state}, it must be in Standstill", state=state)
-        limits = axis.checks.dynamics(command, dynamics)
-        limits, warning = axis.checks.rescaled_jerk(command, limits)
-        axis.checks.soft_limits(command, target)
-        distance = abs(target - axis.setpoint(cycle)[0])
-        increment = axis.parameters.encoder_increment
-        if distance < increment or distance == 0.0:
-            axis.has_been_stopped = False
-            reason = f"{distance:g} {axis.unit} is below one encoder increment ({increment} {axis.unit})"
-            return warning_text(BELOW_INCREMENT, f"axis {axis.name}: {command} over {reason}; the axis does not move")
-        axis.absorb(cycle)
-        axis.ptp.start(cycle, target, limits)
-        axis.target_window.watch()
-        axis.has_been_stopped = False
-        axis.take(T.START)
-        return warning
+    def do_move_velocity(self, cycle: int, *, velocity: float, buffer_mode: str = "", **dynamics: float) -> str | None:
+        """Moves at `velocity` (mm/s, deg/s; its sign is the direction) until another motion comes.
+
+        On a linear axis it ends at the soft limit. Refusals as move_absolute.
+        """
+        command = "move_velocity"
+        if velocity == 0.0:
+            reason = "velocity = 0 must be different from 0; halt the axis"
+            self._axis.refuse(command, BAD_DYNAMICS, reason, argument="velocity", value=velocity)
+        limits = self._limits(command, {"velocity": abs(velocity), **dynamics})
+        return self._queue.start(cycle, AtVelocity(command, *limits, velocity), buffer_mode)
+
+    def _limits(self, command: str, dynamics: dict[str, float]) -> tuple[Limits, str | None]:
+        checks = self._axis.checks
+        return checks.rescaled_jerk(command, checks.dynamics(command, dynamics))
 
     # new target (2.3), new velocity and new target (2.4)
 
@@ -121,8 +107,11 @@ class PtpCommands:
 
     def _redirect(self, command: str, cycle: int, request: Request) -> str | None:
         axis = self._axis
+        axis.drop_waiting(cycle)
         axis.ptp.redirect(cycle, request)
+        axis.last_target = request.target + axis.shift(cycle)
         if axis.ptp.job is None:
+            axis.waiting_job = axis.jobs.newest + 1
             return f"axis {axis.name}: {command} waits for the end of the stop"
         axis.take(T.NEW_TARGET)
         axis.has_been_stopped = False

@@ -25,13 +25,18 @@ class StopCommands:
         return self._stop("stop", cycle, locks=True)
 
     def do_halt(self, cycle: int) -> str | None:
-        """Stops on the ramp of the start, but a new target acts immediately (state DiscreteMotion)."""
-        return self._stop("halt", cycle, locks=self._axis.state in (S.CONTINUOUS_MOTION, S.HOMING))
+        """Stops on the ramp of the start, but another motion or target acts immediately (state DiscreteMotion).
+
+        External setpoints and a homing are stopped as by `stop`.
+        """
+        axis = self._axis
+        external = axis.state == S.CONTINUOUS_MOTION and axis.external.mode is not None
+        return self._stop("halt", cycle, locks=external or axis.state == S.HOMING)
 
     def _stop(self, command: str, cycle: int, *, locks: bool) -> str | None:
         axis = self._axis
         self._refuse_synchronous(command)
-        cancelled = self._cancel_target(command)
+        cancelled = self._cancel_target(command, cycle)
         if cancelled is not None:
             return cancelled
         if axis.state not in STOPPABLE:
@@ -40,11 +45,12 @@ class StopCommands:
         self._stopped(locks)
         return None
 
-    def _cancel_target(self, command: str) -> str | None:
+    def _cancel_target(self, command: str, cycle: int) -> str | None:
         """Cancels a new target that waits for the end of a stop; the warning says so."""
         axis = self._axis
         if axis.state != S.STOPPING or not axis.ptp.drop_suspended():
             return None
+        axis.drop_waiting(cycle)
         return f"axis {axis.name}: {command} cancels the waiting new target; the axis stops"
 
     def _refuse_synchronous(self, command: str) -> None:
@@ -61,6 +67,8 @@ class StopCommands:
     def _stopped(self, locks: bool) -> None:
         if locks:
             self._axis.take(T.STOP)
+        elif self._axis.state == S.CONTINUOUS_MOTION:
+            self._axis.take(T.HALT)
         self._axis.has_been_stopped = True
 
     def do_emergency_stop(self, cycle: int, *, deceleration: object = None, jerk: object = None) -> str | None:
@@ -79,7 +87,7 @@ class StopCommands:
         if axis.lead.active:
             return self._stop_drive(cycle, deceleration, jerk)
         ramp, warning = self._emergency_ramp(command, deceleration, jerk)
-        cancelled = self._cancel_target(command)
+        cancelled = self._cancel_target(command, cycle)
         axis.absorb(cycle)
         axis.ptp.stop(cycle, ramp, at_least=True)
         self._stopped(locks=True)

@@ -55,6 +55,7 @@ from cnc_ptp.protocol.unit import EMERGENCY_STOP, UPSTREAM_LOST, Unit
 NO_PROGRAM = 22003
 NOT_NOW = 22004
 AXIS_NOT_READY = 22005
+COORDINATES_SHIFTED = 22037
 BAD_OVERRIDE = 22006
 NOTHING_TO_ACKNOWLEDGE = 22007
 STILL_MOVING = 22008
@@ -588,6 +589,9 @@ class ChannelUnit(Unit):
         for node in self.lost:
             if node in self._axes.nodes or any(node == spindle.node for spindle in self._parameters.spindles):
                 self._refuse(command, AXIS_NOT_READY, f"'{node}' no longer publishes", unit=node)
+        for node in self._axes.shifted(self._feedback):
+            reason = f"the coordinates of axis {node} are not those of the machine (set_position)"
+            self._refuse(command, COORDINATES_SHIFTED, f"{reason}; shift them back or home the axis", axis=node)
         before = state.copy()
         unreferenced = self._axes.unreferenced(self._feedback)
         start = self._motion.position

@@ -73,6 +73,10 @@ class PathAxes:
         at_start = self._referenced_at_start.items()
         return [node for node, referenced in at_start if not is_referenced(feedback.get(node), referenced)]
 
+    def shifted(self, feedback: Mapping[str, CycleBlock]) -> list[str]:
+        """Nodes of the axes whose coordinates are not those of the machine (set_position)."""
+        return [node for node in self.nodes if is_shifted(feedback.get(node))]
+
     def read_releases(self, inputs: Mapping[str, CycleBlock], *, can_be_held: bool) -> list[str]:
         """Finds the axes on the path without feed release in their direction; returns those that had it before."""
         before, nodes = self.withheld, self.nodes if can_be_held and self.on_path else ()
@@ -90,6 +94,11 @@ def is_beside(block: CycleBlock | None, position: float) -> bool:
 def is_referenced(block: CycleBlock | None, at_start: bool) -> bool:
     """True for an axis whose reference point is known; `at_start` counts until it has reported."""
     return not block.status_bits[-1] & StatusBit.NOT_REFERENCED if isinstance(block, AxisBlock) else at_start
+
+
+def is_shifted(block: CycleBlock | None) -> bool:
+    """True for an axis whose coordinates were moved against those of the machine."""
+    return isinstance(block, AxisBlock) and bool(block.status_bits[-1] & StatusBit.COORDINATES_SHIFTED)
 
 
 def lacks_release(block: CycleBlock | None) -> bool:

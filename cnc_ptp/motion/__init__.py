@@ -10,7 +10,8 @@ from cnc_ptp.motion.ramp import stopping_distance
 from cnc_ptp.motion.rest_to_rest import plan_rest_to_rest
 from cnc_ptp.motion.sine_profile import sine_from_rest, sine_stopping_distance, sine_to_position, sine_to_rest
 from cnc_ptp.motion.step_profile import step_stopping_distance, step_to_position, step_to_velocity
-from cnc_ptp.motion.to_position import plan_to_position
+from cnc_ptp.motion.through_position import plan_through_position
+from cnc_ptp.motion.to_position import plan_to_position, plan_with_ramp
 from cnc_ptp.motion.to_velocity import plan_to_velocity
 
 __all__ = [
@@ -19,8 +20,10 @@ __all__ = [
     "RestToRestBatch",
     "plan_rest_to_rest",
     "plan_rest_to_rest_batch",
+    "plan_through_position",
     "plan_to_position",
     "plan_to_velocity",
+    "plan_with_ramp",
     "sine_from_rest",
     "sine_stopping_distance",
     "sine_to_position",

@@ -41,19 +41,47 @@ def plan_to_position(p: float, v: float, a: float, target: float, limits: Limits
     check_limits(limits)
     if not usual(p, v, a, target):
         check_state(position=p, velocity=v, acceleration=a, target=target)
-    _, _, deceleration, jerk = limits
-    distance = target - p
-    stop = stopping_distance(v, a, deceleration, jerk)
-    gap = distance - stop
-    if abs(gap) <= WAY_ROUNDING * abs(stop) + PLACE_ROUNDING * (abs(p) + abs(target)) + NEGLIGIBLE_DISTANCE:
+    s = _side(p, v, a, target, limits)
+    if s == 0.0:
         return _table(p, v, target, 1.0, [], ramp(v, a, 0.0, limits))
-    s = 1.0 if gap > 0.0 else -1.0
     if _stops_first(s * v, s * a, limits) and not direct:
-        return _stop_and_return(p, v, a, target, limits)
+        return _stop_and_return(p, v, a, target, limits, limits)
     v *= s
     a *= s
-    head, tail = _leave_ramp(v, a, s * distance, limits)
+    head, tail = _leave_ramp(v, a, s * (target - p), limits)
     return _table(p, v, target, s, head, tail)
+
+
+def plan_with_ramp(
+    p: float, v: float, a: float, target: float, limits: Limits, stronger: Limits
+) -> tuple[Profile, Limits]:
+    """`plan_to_position` with A- and J of `stronger` where those of `limits` would lead past `target`.
+
+    If these do too, the stop is the stronger one, the return is within `limits`. Also returns the limits of the part
+    that comes first. Raises as `plan_to_position`.
+    """
+    check_limits(stronger)
+    first = limits
+    if leads_past(p, v, a, target, limits):
+        first = limits._replace(deceleration=stronger.deceleration, jerk=stronger.jerk)
+        if leads_past(p, v, a, target, first):
+            return _stop_and_return(p, v, a, target, limits, first), first
+    return plan_to_position(p, v, a, target, first), first
+
+
+def leads_past(p: float, v: float, a: float, target: float, limits: Limits) -> bool:
+    """True when an axis in motion cannot stop before `target`, or moves away from it."""
+    s = _side(p, v, a, target, limits)
+    return s != 0.0 and _stops_first(s * v, s * a, limits)
+
+
+def _side(p: float, v: float, a: float, target: float, limits: Limits) -> float:
+    """Where the target is, seen from the place where the fastest stop ends: +1, -1, or 0 but for rounding there."""
+    stop = stopping_distance(v, a, limits.deceleration, limits.jerk)
+    gap = target - p - stop
+    if abs(gap) <= WAY_ROUNDING * abs(stop) + PLACE_ROUNDING * (abs(p) + abs(target)) + NEGLIGIBLE_DISTANCE:
+        return 0.0
+    return 1.0 if gap > 0.0 else -1.0
 
 
 def _stops_first(v: float, a: float, limits: Limits) -> bool:
@@ -65,12 +93,12 @@ def _stops_first(v: float, a: float, limits: Limits) -> bool:
     return left < -REST_ROUNDING * v
 
 
-def _stop_and_return(p: float, v: float, a: float, target: float, limits: Limits) -> Profile:
-    """Two profiles joined in one table: the stop ramp, then from rest to rest back to the target.
+def _stop_and_return(p: float, v: float, a: float, target: float, limits: Limits, stop_limits: Limits) -> Profile:
+    """Two profiles joined in one table: the stop ramp, then from rest to rest back to the target within `limits`.
 
     Distances are counted from p, so that the return keeps its digits far away from zero.
     """
-    table, t, stop, _ = integrate(0.0, 0.0, v, ramp(v, a, 0.0, limits), p)
+    table, t, stop, _ = integrate(0.0, 0.0, v, ramp(v, a, 0.0, stop_limits), p)
     back = rest_to_rest(stop, target - p, limits)
     table += [(t + t0, p + x, v0, a0, j0) for t0, x, v0, a0, j0 in back.rows]
     table[-1] = (t + back.duration, target, 0.0, 0.0, 0.0)

@@ -9,7 +9,18 @@ from cnc_ptp.protocol.axis_states import REST_STATES, AxisStateCode, StatusBit
 from cnc_ptp.protocol.blocks import AxisBlock, Command, CycleBlock
 from cnc_ptp.protocol.commands import COUPLINGS
 
-STARTS = frozenset({"move_absolute", "move_relative", "move_modulo", "jog", "external_enable"})
+STARTS = frozenset(
+    {
+        "move_absolute",
+        "move_relative",
+        "move_modulo",
+        "move_additive",
+        "move_velocity",
+        "move_superimposed",
+        "jog",
+        "external_enable",
+    }
+)
 CHANGES_OF_COUPLINGS = COUPLINGS | {"decouple", "set_coupling_factor", "set_cyclic_factor", "change_cam"}
 
 

@@ -36,6 +36,7 @@ class StatusBit(IntEnum):
     FRICTION_COMPENSATION = 1 << 16
     FEED_WITHHELD = 1 << 17
     NOT_REFERENCED = 1 << 18
+    COORDINATES_SHIFTED = 1 << 19
     ERROR = 1 << 31
 
 

@@ -22,6 +22,11 @@ COMMAND_TEXTS: Mapping[str, Mapping[str, str]] = {
         "move_absolute": "positioning to a target",
         "move_relative": "positioning over a distance from the set position",
         "move_modulo": "positioning within a turn, modulo axes",
+        "move_additive": "positioning over a distance from the target of the last positioning",
+        "move_velocity": "moves at a velocity until another motion comes",
+        "move_superimposed": "adds a distance to the basic motion",
+        "halt_superimposed": "ends the superimposed motion on its ramp",
+        "set_position": "other coordinates for the axis, which does not move",
         "set_override": "override of PTP motion",
         "set_override_type": "to which velocity the override applies",
         "stop": "stops on the ramp; new targets wait until the axis is at a standstill",
@@ -113,6 +118,13 @@ ARGUMENT_TEXTS: Mapping[str, ArgumentText] = {
     "acceleration": ArgumentText("mm/s², °/s²", "largest acceleration", "P-AXIS-00001"),
     "deceleration": ArgumentText("mm/s², °/s²", "largest deceleration", "P-AXIS-00002"),
     "jerk": ArgumentText("mm/s³, °/s³", "largest jerk", "P-AXIS-00001 / P-AXIS-00196"),
+    "buffer_mode": ArgumentText(
+        "", "how it follows an active motion ([ptp.md](ptp.md#buffer-modes))", "only from Standstill"
+    ),
+    "velocity_difference": ArgumentText(
+        "mm/s, °/s", "largest velocity of the addition", "what P-AXIS-00212 leaves beside the basic motion"
+    ),
+    "relative": ArgumentText("", "`position` is a distance from the actual one", "off"),
     "percent": ArgumentText("%", "override"),
     "type": ArgumentText("", "1 … 4"),
     "activation_position": ArgumentText("mm, °", "where the new velocity starts to act"),
@@ -165,6 +177,8 @@ SPECIAL_TEXTS: Mapping[tuple[str, str, str], ArgumentText] = {
     ("axis", "new_velocity_and_target", "velocity"): ArgumentText("mm/s, °/s", "from the activation position on"),
     ("axis", "home", "position"): ArgumentText("mm, °", "position of the reference point", "P-AXIS-00152"),
     ("axis", "write_drive_parameter", "value"): ArgumentText("", "in digits of the drive"),
+    ("axis", "move_velocity", "velocity"): ArgumentText("mm/s, °/s", "sign = direction"),
+    ("axis", "set_position", "position"): ArgumentText("mm, °", "the actual position from now on"),
     ("axis", "jog", "velocity"): ArgumentText("mm/s, °/s", "sign = direction"),
     ("axis", "emergency_stop", "deceleration"): ArgumentText("mm/s², °/s²", "of the stop", "that of the start"),
     ("axis", "emergency_stop", "jerk"): ArgumentText("mm/s³, °/s³", "of the stop", "that of the start"),

@@ -43,6 +43,10 @@ OPTIONAL_COUNT = Argument("integer", required=False, positive=True)
 OPTIONAL_POSITIVE = Argument("number", required=False, positive=True)
 LENIENT_NUMBER = Argument("number", required=False, lenient=True)
 DYNAMICS: dict[str, Argument] = dict.fromkeys(("velocity", "acceleration", "deceleration", "jerk"), OPTIONAL_POSITIVE)
+BUFFER_MODES = ("aborting", "buffered", "blending_low", "blending_previous", "blending_next", "blending_high")
+START: dict[str, Argument] = {**DYNAMICS, "buffer_mode": Argument("text", required=False, choices=BUFFER_MODES)}
+"""Of a motion: its dynamics, and how it follows an active one (PLCopen)."""
+RAMPS: dict[str, Argument] = {name: DYNAMICS[name] for name in ("acceleration", "deceleration", "jerk")}
 DIALECT = Argument("text", required=False, choices=("twincat", "iso"))
 SOURCE: Arguments = {"source": TEXT}
 FOR: Arguments = {"source": Argument("source", required=False)}
@@ -74,9 +78,14 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "reset": {},
         "set_feed_release": {"forward": SWITCH, "backward": SWITCH},
         "feed_hold": {"enabled": SWITCH},
-        "move_absolute": {"target": NUMBER, **DYNAMICS},
-        "move_relative": {"distance": NUMBER, **DYNAMICS},
-        "move_modulo": {"position": NUMBER, **DYNAMICS},
+        "move_absolute": {"target": NUMBER, **START},
+        "move_relative": {"distance": NUMBER, **START},
+        "move_modulo": {"position": NUMBER, **START},
+        "move_additive": {"distance": NUMBER, **START},
+        "move_velocity": {**START, "velocity": NUMBER},
+        "move_superimposed": {"distance": NUMBER, "velocity_difference": OPTIONAL_POSITIVE, **RAMPS},
+        "halt_superimposed": {},
+        "set_position": {"position": NUMBER, "relative": OPTIONAL_SWITCH},
         "set_override": {"percent": NUMBER},
         "set_override_type": {"type": INTEGER},
         "stop": {},

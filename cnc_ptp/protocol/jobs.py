@@ -19,6 +19,8 @@ JOBS: Mapping[str, Collection[str]] = {
             "move_absolute",
             "move_relative",
             "move_modulo",
+            "move_additive",
+            "move_velocity",
             "new_target",
             "new_velocity_and_target",
             "jog",
@@ -34,6 +36,8 @@ JOBS: Mapping[str, Collection[str]] = {
             "couple_flying_saw",
             "couple_cam",
             "decouple",
+            "move_superimposed",
+            "halt_superimposed",
         }
     ),
     "spindle": frozenset({"start", "set_speed", "stop", "orient", "home"}),
@@ -41,6 +45,8 @@ JOBS: Mapping[str, Collection[str]] = {
     "plc": frozenset(),
 }
 """Kind of unit -> commands that are jobs."""
+SUPERIMPOSED = frozenset({"move_superimposed", "halt_superimposed"})
+"""Jobs that are active beside that of the basic motion."""
 
 
 class JobStatus(IntEnum):
@@ -53,10 +59,11 @@ class JobStatus(IntEnum):
 
 
 class Jobs:
-    """Numbers the jobs of one unit and notes what becomes of them; at most one is active.
+    """Numbers the jobs of one unit and notes what becomes of them.
 
-    A job that begins aborts the active one. A job ends when its unit is at rest: done at a standstill, failed in
-    ErrorStop, aborted without power; a job without an end of its own stays active until another one begins.
+    At most one is active, and one beside it that moves an axis in addition to its basic motion. A job that begins
+    aborts the active one of its place. A job ends when its unit is at rest: done at a standstill, failed in ErrorStop,
+    aborted without power; a job without an end of its own stays active until another one begins.
     """
 
     def __init__(self) -> None:
@@ -64,6 +71,10 @@ class Jobs:
         """Number of the newest job; 0: there was none."""
         self.active = 0
         """Number of the active job; 0: none is."""
+        self.superimposed = 0
+        """Number of the job that is active beside it; 0: none is."""
+        self._since = 0
+        """Cycle at which the newest job became active: what the unit was before is not its end."""
         self._events: list[JobEvent] = []
 
     def accept(self) -> int:
@@ -74,7 +85,7 @@ class Jobs:
     def activate(self, cycle: int, number: int) -> None:
         """An accepted job becomes the active one."""
         self.end(cycle, JobStatus.ABORTED)
-        self.active = number
+        self.active, self._since = number, cycle
         self._note(number, JobStatus.ACTIVE, cycle)
 
     def begin(self, cycle: int) -> int:
@@ -82,11 +93,24 @@ class Jobs:
         self.activate(cycle, self.accept())
         return self.newest
 
+    def begin_superimposed(self, cycle: int) -> int:
+        """The same for a job beside the active one."""
+        self.end_superimposed(cycle, JobStatus.ABORTED)
+        self.superimposed, self._since = self.accept(), cycle
+        self._note(self.superimposed, JobStatus.ACTIVE, cycle)
+        return self.newest
+
     def end(self, cycle: int, status: JobStatus, error_id: int = 0) -> None:
         """The active job, if there is one, ends."""
         if self.active:
             self._note(self.active, status, cycle, error_id)
             self.active = 0
+
+    def end_superimposed(self, cycle: int, status: JobStatus, error_id: int = 0) -> None:
+        """The job beside it, if there is one, ends."""
+        if self.superimposed:
+            self._note(self.superimposed, status, cycle, error_id)
+            self.superimposed = 0
 
     def drop(self, cycle: int, number: int, error_id: int = 0) -> None:
         """A job that waits will never become active; with an error number it was refused at its turn."""
@@ -96,13 +120,15 @@ class Jobs:
         self._events.append(JobEvent(number, int(status), cycle, error_id))
 
     def watch(self, block: CycleBlock) -> None:
-        """Ends the active job at the first cycle of a new block in which its unit is at rest."""
-        if not self.active or isinstance(block, PlcBlock):
+        """Ends the active jobs at the first cycle of a new block in which their unit is at rest."""
+        if not (self.active or self.superimposed) or isinstance(block, PlcBlock):
             return
         ends = CHANNEL_ENDS if isinstance(block, ChannelBlock) else AXIS_ENDS
-        for index, state in enumerate(block.state):
-            if state in ends:
-                self.end(block.first_cycle + index, ends[state], block.error_id[index])
+        for cycle, state in enumerate(block.state, block.first_cycle):
+            if state in ends and cycle >= self._since:
+                error_id = block.error_id[cycle - block.first_cycle]
+                self.end(cycle, ends[state], error_id)
+                self.end_superimposed(cycle, ends[state], error_id)
                 return
 
     def take_events(self) -> list[JobEvent]:

@@ -101,6 +101,13 @@ def to_rest(state: MotionState, a: float = A, j: float = J) -> Trajectory:
     return _calculate(inputs)
 
 
+def to_velocity(state: MotionState, wanted: float, a: float = A, j: float = J) -> Trajectory:
+    inputs = _inputs(state, 1e9, a, j)
+    inputs.control_interface = ControlInterface.Velocity
+    inputs.target_velocity = [wanted]
+    return _calculate(inputs)
+
+
 def at(trajectory: Trajectory, t: float) -> MotionState:
     p, v, a = trajectory.at_time(min(t, trajectory.duration))
     return (p[0], v[0], a[0])
@@ -123,6 +130,9 @@ def expected(legs: Sequence[Trajectory], cycles: int) -> list[MotionState]:
 
 def legs_to(state: MotionState, target: float, v: float = V, a: float = A, j: float = J) -> list[Trajectory]:
     """The motion to a new target: direct, or by a stop and from there back (TX1250 2.3)."""
+    if abs(state[1]) > v:  # down to V first: Ruckig is slower there
+        slower = to_velocity(state, math.copysign(v, state[1]), a, j)
+        return [slower, *legs_to(at(slower, slower.duration), target, v * (1.0 + 1e-12), a, j)]
     stop = to_rest(state, a, j)
     rest = at(stop, stop.duration)[0]
     direction = math.copysign(1.0, rest - state[0])

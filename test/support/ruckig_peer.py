@@ -41,6 +41,12 @@ class RuckigPeer:
         self.input.target_position = [way * self.millimetre]
         return self._solve(v, a, 0.0, limits)
 
+    def through(self, way: float, v: float, a: float, wanted: float, limits: Limits) -> float | None:
+        """Seconds to the velocity `wanted` with a = 0 at `way`."""
+        self.input.control_interface = ruckig.ControlInterface.Position
+        self.input.target_position = [way * self.millimetre]
+        return self._solve(v, a, wanted, limits)
+
     def to_velocity(self, v: float, a: float, wanted: float, limits: Limits) -> float | None:
         """Seconds to a velocity with a = 0."""
         self.input.control_interface = ruckig.ControlInterface.Velocity

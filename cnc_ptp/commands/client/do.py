@@ -16,7 +16,16 @@ from cnc_ptp.nodes.client.latest_blocks import GONE_TEXT
 from cnc_ptp.nodes.client.machine_client import NO_ANSWER, MachineClient, arguments_of, connected
 from cnc_ptp.protocol.commands import READING
 
-BEGINNINGS = ("move_absolute", "move_relative", "move_modulo", "new_target", "new_velocity_and_target", "start", "mdi")
+BEGINNINGS = (
+    "move_absolute",
+    "move_relative",
+    "move_modulo",
+    "move_additive",
+    "new_target",
+    "new_velocity_and_target",
+    "start",
+    "mdi",
+)
 """Commands for which a stop before the end is a failure."""
 
 
