@@ -439,9 +439,12 @@ class Axis:
         position, rest = self.ptp.state(cycle)[0], self.setpoint(cycle)[0]
         limit = min(map(self.checks.soft_limit, (1.0, -1.0)), key=lambda each: abs(each.position - position))
         now = "the axis is at a standstill" + (f" at {rest:g} {self.unit}" if rest != position else "")
-        if self.external.mode is not None or self.superposition_moves(cycle):
+        if self.added.moving(cycle):
+            now = "a superimposed motion moves the axis now"
+        elif self.external.mode is not None or self.superposition_moves(cycle):
             now = "external setpoints move the axis now"
-        self._report_warning(cycle, JOG_AT_LIMIT, f"axis {self.name}: the jog has reached the {limit.text}; {now}")
+        what = "jog" if self.ptp.job is None or self.ptp.job.jog else "motion at a velocity"
+        self._report_warning(cycle, JOG_AT_LIMIT, f"axis {self.name}: the {what} has reached the {limit.text}; {now}")
 
     def _finish(self, transition: Transition) -> None:
         """A stop that has finished, while external setpoints come to rest, may still be given a new target."""
@@ -508,6 +511,7 @@ class Axis:
             self._end_superposition(cycle)
         if self.coupled:
             self.leave_master(cycle)
+        self.jobs.end_superimposed(cycle, JobStatus.FAILED, error_id)
         self.absorb(cycle)
         self._note_propagation(cycle, error_id)
         effect = self._stop_for(cycle, error_id)

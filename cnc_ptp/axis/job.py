@@ -5,7 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from math import copysign, isinf
 
-from cnc_ptp.motion import Limits, Profile, plan_rest_to_rest, plan_through_position, plan_to_position, plan_with_ramp
+from cnc_ptp.motion import (
+    Limits,
+    Profile,
+    plan_rest_to_rest,
+    plan_through_position,
+    plan_to_position,
+    plan_to_velocity,
+    plan_with_ramp,
+)
 from cnc_ptp.motion.limits import SMALLEST_LIMIT
 
 Start = tuple[float, float, float]
@@ -24,7 +32,8 @@ class Job:
     limits: Limits
     reduced_velocity: float
     ramp: Limits | None = None
-    """What has moved the axis before: its A- and J count where those of the limits would lead past the target."""
+    """What has moved the axis before: its A- and J count where those of the limits would lead past the target, or too
+    fast."""
     through: float = 0.0
     """Signed velocity (mm/s, deg/s) with which it passes its target (blending); 0: it ends there."""
     jog: bool = False
@@ -43,7 +52,7 @@ class Job:
         if self.through:
             passing = copysign(max(through, SMALLEST_LIMIT), self.through)
             return plan_through_position(*start, self.target, passing, limits), limits
-        if velocity == 0.0 and acceleration == 0.0:
+        if velocity == 0.0 and acceleration == 0.0 and not isinf(self.target):
             return plan_rest_to_rest(position, self.target, limits), limits
         return planned(start, self.target, limits, self.ramp)
 
@@ -58,10 +67,34 @@ class Activation:
 
 
 def planned(start: Start, target: float, limits: Limits, ramp: Limits | None) -> tuple[Profile, Limits]:
-    """The table of an axis in motion to `target`, and the limits of its first part; see `Job.ramp`."""
-    if ramp is None or isinf(target):
+    """The table of an axis in motion to `target` (±infinity: endless), and the limits of its first part.
+
+    With a `ramp` (see `Job`) an acceleration that leads too far is taken out with its jerk first.
+    """
+    if ramp is None or not leads_too_fast(start, limits):
+        return _to_target(start, target, limits, ramp)
+    position, velocity, acceleration = start
+    jerk = -copysign(ramp.jerk, acceleration)
+    d = -acceleration / jerk
+    after = position + d * (velocity + d * (acceleration / 3.0)), velocity + 0.5 * d * acceleration, 0.0
+    rest, _ = _to_target(after, target, limits, ramp)
+    rows = [(0.0, position, velocity, acceleration, jerk), *((d + t, p, v, a, j) for t, p, v, a, j in rest.rows)]
+    return Profile(rows), limits._replace(deceleration=ramp.deceleration, jerk=ramp.jerk)
+
+
+def _to_target(start: Start, target: float, limits: Limits, ramp: Limits | None) -> tuple[Profile, Limits]:
+    if isinf(target):
+        return plan_to_velocity(*start, copysign(limits.velocity, target), limits), limits
+    if ramp is None:
         return plan_to_position(*start, target, limits), limits
     return plan_with_ramp(*start, target, limits, ramp)
+
+
+def leads_too_fast(start: Start, limits: Limits) -> bool:
+    """True when the acceleration, taken out with their J, leaves a velocity above V, or one in the other direction."""
+    _, v, a = start
+    left = v + a * abs(a) / (2.0 * limits.jerk)
+    return a != 0.0 and (abs(left) > max(abs(v), limits.velocity) or left * v < 0.0)
 
 
 def stronger(limits: Limits, ramp: Limits | None) -> Limits | None:

@@ -162,7 +162,7 @@ class MotionQueue:
         distance, following = job.target - ptp.state(cycle)[0], motion.goal(axis, end) - end
         velocity = TRANSITION_VELOCITY[self._mode](job.limits.velocity, motion.limits.velocity)
         velocity = self._stoppable(velocity, abs(following), motion.limits)
-        if distance * following <= 0.0 or ptp.passes_by(cycle, job) > 0.0:
+        if distance * following <= 0.0 or not ptp.steady(cycle, job):
             velocity = 0.0
         if velocity or job.through:
             ptp.pass_through(cycle, copysign(velocity, following))

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from math import ceil, copysign, inf, isinf
 
-from cnc_ptp.axis.job import Activation, Job, Start, planned, stronger
+from cnc_ptp.axis.job import Activation, Job, Start, leads_too_fast, planned, stronger
 from cnc_ptp.axis.tables import last_leg, peak_velocity, reaches, standing
 from cnc_ptp.axis.two_stage import Request, Stage, velocity_stage
 from cnc_ptp.motion import (
@@ -228,14 +228,14 @@ class PtpGenerator:
     def continue_to(self, cycle: int, target: float, limits: Limits, *, jog: bool = False) -> None:
         """Another job for an axis in motion: to `target`, endless for ±infinity; a `jog` only another one may change.
 
-        If its limits would lead past the target, the axis brakes with A- and J of its motion until now where these are
+        If its limits would lead past the target, or too fast, A- and J of the motion until now count where these are
         larger. Raises CncError 23001 and 23002 for limits and targets that no table can be made for; then nothing is
         changed.
         """
         check_limits(limits)
         start = self._start(cycle)
         past = not isinf(target) and leads_past(*start, target, limits)
-        ramp = stronger(limits, self._ramp_limits) if past else None
+        ramp = stronger(limits, self._ramp_limits) if past or leads_too_fast(start, limits) else None
         job = replace(self._job_in_motion(cycle, target, limits, ramp), jog=jog)
         self._activation = self._due = None
         self._begin(cycle, job, *self._table(cycle, job))
@@ -248,6 +248,10 @@ class PtpGenerator:
         assert self.job is not None
         job = replace(self.job, through=velocity)
         self._begin(cycle, job, *self._table(cycle, job))
+
+    def steady(self, cycle: int, job: Job) -> bool:
+        """The active job keeps within its own limits, and can still stop in its target."""
+        return self.passes_by(cycle, job) == 0.0 and self._braking(cycle, job) == job.limits
 
     def lift_ceiling(self, cycle: int) -> None:
         """Nothing is superimposed from now on: the job has its own velocity again."""
@@ -413,7 +417,7 @@ class PtpGenerator:
     def _job_in_motion(self, cycle: int, target: float, limits: Limits, ramp: Limits | None = None) -> Job:
         """The job to `target` for an axis in motion; if it stops and returns, its return counts."""
         if isinf(target):
-            return Job(target, limits, limits.velocity)
+            return Job(target, limits, limits.velocity, ramp)
         leg = last_leg(planned(self._start(cycle), target, limits, ramp)[0])
         if leg[0][2] == 0.0 and leg[0][3] == 0.0:
             return replace(self._job_from_rest(leg[0][1], target, limits), ramp=ramp)
@@ -439,8 +443,6 @@ class PtpGenerator:
         if self.override == 0.0:
             limits = self._braking(cycle, job)
             return plan_to_velocity(*start, 0.0, limits), limits
-        if isinf(job.target):
-            return plan_to_velocity(*start, copysign(level.velocity, job.target), job.limits), job.limits
         return job.table(start, level, min(abs(job.through) * self.override, self.ceiling))
 
     def _level_is_missed(self, cycle: int, job: Job, table: Profile) -> bool:

@@ -398,3 +398,14 @@ def test_a_slave_does_not_home() -> None:
     assert (
         master == "P-ERR-23071 axis x: home refused: the axis is the master of y; decouple first; nothing was changed"
     )
+
+
+def test_the_reference_takes_other_coordinates_back() -> None:
+    """set_position counts until the homing has found the reference point, which counts from the machine again."""
+    plain, shifted = bench(at=100.0), bench(at=100.0)
+    shifted.accepted("set_position", position=500.0, relative=True)
+    for made in (plain, shifted):
+        home(made)
+    assert shifted.column("set_position")[-1] == pytest.approx(plain.column("set_position")[-1], abs=1e-9)
+    bits = shifted.column("status_bits")
+    assert bits[15] & StatusBit.COORDINATES_SHIFTED and not bits[-1] & StatusBit.COORDINATES_SHIFTED

@@ -110,7 +110,8 @@ def to_velocity(state: MotionState, wanted: float, a: float = A, j: float = J) -
 
 def at(trajectory: Trajectory, t: float) -> MotionState:
     p, v, a = trajectory.at_time(min(t, trajectory.duration))
-    return (p[0], v[0], a[0])
+    on = v[0] * (t - trajectory.duration) if t > trajectory.duration and abs(v[0]) > 1e-6 else 0.0
+    return (p[0] + on, v[0], a[0])
 
 
 def expected(legs: Sequence[Trajectory], cycles: int) -> list[MotionState]:
