@@ -37,7 +37,7 @@ class UnitKind:
     usual: tuple[str, ...]
 
 
-LISTS = ("commands", "refused")
+LISTS = ("commands", "refused", "job_events", "answers")
 """Lists of a block that do not have one entry per cycle."""
 
 
