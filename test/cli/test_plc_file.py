@@ -117,7 +117,9 @@ def test_a_condition_that_never_comes_true_is_said(tmp_path: Path) -> None:
     path = tmp_path / "run.mcap"
     result = simulate(PTP, "--duration", "0.1", "--record", path, "--record-when", "x.set_velocity > 5")
     assert result.exit_code == 0
-    assert "note: the condition of --record-when was never true; commands and events alone are recorded" in result.output
+    assert (
+        "note: the condition of --record-when was never true; commands and events alone are recorded" in result.output
+    )
     assert read_recording(path).states == {}
 
 

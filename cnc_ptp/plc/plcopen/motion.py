@@ -183,11 +183,11 @@ class MC_Stop(ExecuteBlock):
 
 
 class MC_Home(ExecuteBlock):
-    """Homing, as the parameters of the unit say."""
+    """Homing, as the parameters of the unit say; `position` of the reference point of an axis instead of P-AXIS-00152."""
 
-    def __call__(self, execute: bool) -> None:
+    def __call__(self, execute: bool, position: float | None = None) -> None:
         if self._rises(execute):
-            self._start("home")
+            self._start("home", position=position)
 
 
 class MC_OrientSpindle(ExecuteBlock):
