@@ -22,6 +22,7 @@ SUBJECTS = {
     "thread": "[Threads](threads.md)",
     "caxis": "[C axis](caxis.md)",
     "turning": "[Turning](turning.md)",
+    "plc": "[PLC](plc.md)",
 }
 """First word of the file name, and the page that explains the figure."""
 

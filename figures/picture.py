@@ -34,6 +34,8 @@ from cnc_ptp.plots.sheet import (
 from cnc_ptp.protocol.axis_states import StatusBit
 from figures.run import Column, FigureRun
 from figures.scenario_head import FigureError, FigureScenario
+from figures.signals import draw_signals
+from figures.signals import height as signal_height
 
 BANDS = {StatusBit.COMPENSATING: "compensating", StatusBit.EXT_SETPOINT: "external"}
 """Tints by bits of the status."""
@@ -47,7 +49,8 @@ def draw(figure: FigureScenario, run: FigureRun) -> Figure:
     panels = list(chosen_panels(figure, run))
     labels = label_rows(run, end)
     above = label_height(labels)
-    sheet = Sheet(figure, above + sum(HEADER + panel.height + GAP for _, panel in panels))
+    signals = HEADER + signal_height(run) + GAP if run.signals else 0.0
+    sheet = Sheet(figure, above + sum(HEADER + panel.height + GAP for _, panel in panels) + signals)
     upper = sheet.upper
     for title, panel in panels:
         first = (title, panel) == panels[0]
@@ -56,6 +59,10 @@ def draw(figure: FigureScenario, run: FigureRun) -> Figure:
         draw_panel(plot, title, run, end, room_above=room)
         draw_commands(plot, labels, with_texts=first)
         upper += HEADER + room + panel.height + GAP
+    if run.signals:
+        plot = sheet.plot(upper + HEADER, signal_height(run))
+        draw_signals(plot, run, end)
+        draw_commands(plot, labels, with_texts=False)
     plot.tick_params(labelbottom=True)
     sheet.write_below("time in s")
     return sheet.drawing

@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from operator import attrgetter
 
 import numpy as np
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
+from cnc_ptp.machine.plc_file import read_plc
 from cnc_ptp.machine.run_entries import read_entries
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.parameters.view.encoder import uses_feed_constant
+from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.plots.over_time import Column, Marker
 from cnc_ptp.plots.panels import UNIT_KINDS
 from cnc_ptp.protocol.blocks import CommandRecord, Event, Severity
 from cnc_ptp.protocol.commands import INTERNAL
+from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.recording.command_words import brief
 from cnc_ptp.recording.units import unit_of
 from figures.scenario_head import FigureError, FigureScenario
@@ -53,6 +57,8 @@ class FigureRun:
     machine: MachineParameters
     ticks: tuple[Outputs, ...]
     """All that all units gave, for pictures that are no time plots."""
+    signals: Mapping[str, Column] = field(default_factory=dict)
+    """Switched values of a PLC in a file by name, 0 or 1 in each cycle."""
 
     @property
     def cycles(self) -> int:
@@ -84,13 +90,31 @@ def run_figure(figure: FigureScenario) -> FigureRun:
     try:
         machine = read_machine(figure.machine_path)
         job = read_entries(machine, program=program, scenario=str(figure.path), may_be_empty=True)
+        file = read_plc(str(figure.plc_path)) if figure.plc_path else None
+        units = build_units(machine, scenario=job, plc_file=file)
     except CncError as error:
         raise FigureError(figure.path, error) from None
     for name in figure.axes:
         if name not in machine.axes and name not in machine.spindles:
             known = ", ".join([*machine.axes, *machine.spindles])
             raise FigureError(figure.path, f"axis '{name}' does not exist in {figure.machine}, known are {known}")
-    return _collect(figure, machine, tuple(OfflineMachine(machine, build_units(machine, scenario=job)).run()))
+    samples: list[list[float]] = []
+    ticks = []
+    for outputs in OfflineMachine(machine, units).run():
+        ticks.append(outputs)
+        samples.append([_signal(figure, units[PLC], name) for name in figure.signals])
+    run = _collect(figure, machine, tuple(ticks))
+    columns = np.array(samples, dtype=np.float64).repeat(machine.block_cycles, axis=0)
+    return replace(run, signals={name: columns[:, index] for index, name in enumerate(figure.signals)})
+
+
+def _signal(figure: FigureScenario, plc: object, name: str) -> float:
+    """A switched value of the PLC's object by its path: move.busy. Raises FigureError."""
+    program = plc.program if isinstance(plc, PlcUnit) else None
+    try:
+        return float(bool(attrgetter(name)(program.plc if program is not None else None)))
+    except AttributeError:
+        raise FigureError(figure.path, f"signal '{name}' does not exist in the PLC '{figure.plc}'") from None
 
 
 def _collect(figure: FigureScenario, machine: MachineParameters, ticks: tuple[Outputs, ...]) -> FigureRun:
@@ -98,7 +122,8 @@ def _collect(figure: FigureScenario, machine: MachineParameters, ticks: tuple[Ou
     records = [record for output in outputs for record in output.records]
     errors = [event for output in outputs for event in output.events if event.severity == Severity.ERROR]
     shown = {event.error_id for event in errors} if figure.shows_errors else set()
-    refusals = [record for record in records if not record.accepted and record.error_id not in shown]
+    refused_ones = [] if figure.shows_errors and figure.plc else records
+    refusals = [record for record in refused_ones if not record.accepted and record.error_id not in shown]
     refused = [f"P-ERR-{record.error_id} {record.message}" for record in refusals]
     if refused or (errors and not figure.shows_errors):
         texts = [f"P-ERR-{event.error_id} {event.text}" for event in errors if not figure.shows_errors]

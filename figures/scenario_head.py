@@ -11,6 +11,8 @@ The head is the block of comment lines at the top of the file, `key: value` each
 Besides there may be
 - `panels: velocity, following error`: these in this order (cnc_ptp/plots/panels.py) instead of the usual ones,
 - `program: part.nc`: an NC program beside the scenario, which starts with it on the first channel,
+- `plc: plc.py`: a PLC in a file beside the scenario, and `signals: move.execute, move.busy`: switched values of its
+  object that are drawn below the panels (figures/signals.py),
 - `kind: circle`: another picture than panels over time (figures/kinds.py), with `turns:` (figures/circle.py)
   or `over:` and `points:` (figures/spindle_curve.py),
 - `errors: shown`: a figure of faults; without it a fault means that there is no picture.
@@ -32,7 +34,8 @@ ROOT = Path(__file__).parents[1]
 KEYS = ("title", "caption", "machine", "axes")
 PANELS, PROGRAM, KIND, TURNS, ERRORS, SHOWN = "panels", "program", "kind", "turns", "errors", "shown"
 OVER, POINTS = "over", "points"
-CHOICES = (PANELS, PROGRAM, KIND, TURNS, OVER, POINTS, ERRORS)
+PLC, SIGNALS = "plc", "signals"
+CHOICES = (PANELS, PROGRAM, PLC, SIGNALS, KIND, TURNS, OVER, POINTS, ERRORS)
 OVER_TIME = "time"
 
 
@@ -62,6 +65,9 @@ class FigureScenario:
     turns: str = ""
     over: str = ""
     points: tuple[str, ...] = ()
+    plc: str = ""
+    """Relative to the scenario."""
+    signals: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
@@ -75,6 +81,10 @@ class FigureScenario:
     @property
     def program_path(self) -> Path | None:
         return self.path.parent / self.program if self.program else None
+
+    @property
+    def plc_path(self) -> Path | None:
+        return self.path.parent / self.plc if self.plc else None
 
 
 def read_head(path: Path) -> FigureScenario:
@@ -114,6 +124,8 @@ def read_head(path: Path) -> FigureScenario:
         head.get(TURNS, ""),
         head.get(OVER, ""),
         names(head.get(POINTS, "")),
+        head.get(PLC, ""),
+        names(head.get(SIGNALS, "")),
     )
 
 

@@ -13,6 +13,7 @@ from cnc_ptp.protocol.control_units import PERCENT, ControlUnit
 from cnc_ptp.protocol.jobs import JOBS, Jobs
 from cnc_ptp.protocol.overlay import HELD_BY_PLC, SERVED_BY_PLC, Overlay
 
+
 class Answer(NamedTuple):
     """What a command was to find out, as text and by name."""
 

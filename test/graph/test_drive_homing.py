@@ -6,7 +6,6 @@ import pytest
 from client_support import beside_composed_run
 from graph_support import ROOT, run, states_equal, verified
 
-
 from cnc_ptp.protocol.axis_states import AxisStateCode
 from cnc_ptp.recording.reader import read_recording
 

@@ -49,6 +49,7 @@ REFUSED = {
     ("channel", "set_zero_offset"): "argument 'value' is missing",
     ("channel", "teach_zero_offset"): "index = 0 is not within 1 ... 96; G53 selects no offset (P-ZERO-00001)",
     ("channel", "set_clamp_position"): "index = 4294967295 is not within 0 ... 149",
+    ("plc", "set_input"): "argument 'value' is missing",
     ("channel", "measuring_event"): "nothing in the running block waits for one",
 }
 """Reasons, in a unit at a standstill."""

@@ -276,10 +276,7 @@ def test_mc_power_gives_enable_and_feed_releases_when_they_change() -> None:
     assert unit.given == [] and power.busy  # nothing is known of the unit
     unit.block = axis_block(S.DISABLED)
     power(True)
-    assert [(given.command, given.arguments) for given in unit.given] == [
-        ("power", {"enabled": True}),
-        ("set_feed_release", {"forward": True, "backward": True}),
-    ]
+    assert [(given.command, given.arguments) for given in unit.given] == [("power", {"enabled": True})]
     assert (power.busy, power.valid, power.status) == (True, False, False)
     for given in unit.given:
         given.tells = ACCEPTED
@@ -287,13 +284,14 @@ def test_mc_power_gives_enable_and_feed_releases_when_they_change() -> None:
     power(True)
     assert (power.busy, power.valid, power.status, power.error) == (False, True, True, False)
     power(True, enable_negative=False)
-    assert len(unit.given) == 3 and unit.last.arguments == {"forward": True, "backward": False}
+    assert len(unit.given) == 2 and unit.last.arguments == {"forward": True, "backward": False}
     unit.last.tells = REFUSED
     power(True, enable_negative=False)
     assert (power.valid, power.error, power.error_id) == (False, True, 23005)
     unit.block = axis_block(S.ERROR_STOP)
     power(False)
-    assert unit.given[3].arguments == {"enabled": False} and not power.status
+    assert unit.given[2].arguments == {"enabled": False} and not power.status
+    assert unit.given[3].arguments == {"forward": True, "backward": True}
 
 
 def test_mc_power_does_not_command_an_enable_that_is_there() -> None:
@@ -301,9 +299,9 @@ def test_mc_power_does_not_command_an_enable_that_is_there() -> None:
     unit.block = axis_block(S.STANDSTILL)
     power = MC_Power(unit)
     power(True)
-    assert [given.command for given in unit.given] == ["set_feed_release"]
+    assert unit.given == [] and power.valid and power.status
     power(False)
-    assert unit.given[1].arguments == {"enabled": False}
+    assert unit.given[0].arguments == {"enabled": False}
     other = MC_Power(FakeUnit("spindle"))
     other.unit.block = spindle_block(S.DISABLED)
     other(True)

@@ -324,7 +324,8 @@ def test_a_unit_that_is_lost_is_an_error_of_its_blocks() -> None:
     assert seen[-1] == (26101, "spindle s: its motion has ended with error 26101")
     ticket = program.io.spindle("s").give("stop")
     program.run(CycleTick(510, 10), {}, {"s"})
-    assert program.io.spindle("s").answer(ticket)[1:] == (26101, 0, "spindle s is lost")
+    answer = program.io.spindle("s").answer(ticket)
+    assert (answer.error_id, answer.message) == (26101, "spindle s is lost")
 
 
 # determinism

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 from cnc_ptp.plc.plcopen.buffer_mode import SPINDLE_MODES, mode_arguments
 from cnc_ptp.plc.plcopen.faults import BAD_BUFFER_MODE, CAME_TO_REST, STOP_HOLDS
@@ -21,9 +21,9 @@ class ExecuteBlock:
     nothing of the command before.
     """
 
-    moves = True
+    moves: ClassVar[bool] = True
     """It is refused while MC_Stop holds the unit."""
-    waits_for_job = True
+    waits_for_job: ClassVar[bool] = True
     """It ends with its job; otherwise with the answer of the unit."""
 
     def __init__(self, unit: UnitReference) -> None:

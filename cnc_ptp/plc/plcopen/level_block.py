@@ -106,7 +106,8 @@ class MC_Power:
         if not self._power.given and self.enable and state not in (S.DISABLED, S.ERROR_STOP):
             self._power.assume(enabled=True)
         self._power.give(enabled=self.enable)
-        if self.unit.kind == "axis":
+        withheld = not (enable_positive and enable_negative)
+        if self._release.given or withheld:  # both are released where nobody has said anything
             orders.append(self._release)
             self._release.give(forward=bool(enable_positive), backward=bool(enable_negative))
         refused = next((order for order in orders if order.error_id), None)

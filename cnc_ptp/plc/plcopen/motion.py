@@ -5,7 +5,7 @@ Positions in mm (°), velocities in mm/s (°/s), of spindles in rpm. Dynamics th
 
 from __future__ import annotations
 
-from typing import Any, TypedDict, Unpack
+from typing import Any, ClassVar
 
 from cnc_ptp.axis.faults import IN_BRAKE_PHASE
 from cnc_ptp.plc.plcopen.buffer_mode import ABORTING
@@ -17,59 +17,72 @@ EXACT = 1e-9
 """Part of a velocity: rounding of a setpoint."""
 
 
-class Ramps(TypedDict, total=False):
-    """Inputs of a motion; what is left out, or None, comes from the axis parameters."""
+class PositionBlock(ExecuteBlock):
+    """Positioning to `position`. Dynamics that are None come from the axis parameters."""
 
-    acceleration: float | None
-    deceleration: float | None
-    jerk: float | None
-    buffer_mode: str
-    """aborting without it."""
+    command: ClassVar[str]
+    argument: ClassVar[str]
+    """Of the command: the position."""
+
+    def __call__(
+        self,
+        execute: bool,
+        position: float = 0.0,
+        velocity: float | None = None,
+        acceleration: float | None = None,
+        deceleration: float | None = None,
+        jerk: float | None = None,
+        buffer_mode: str = ABORTING,
+    ) -> None:
+        if self._rises(execute):
+            motion = dynamics_of(acceleration, deceleration, jerk) | {self.argument: position, "velocity": velocity}
+            self._start(self.command, buffer_mode, **motion)
 
 
-class Inputs(Ramps, total=False):
-    """Inputs of a positioning."""
+class DistanceBlock(ExecuteBlock):
+    """Positioning over `distance`. Dynamics that are None come from the axis parameters."""
 
-    velocity: float | None
+    command: ClassVar[str]
+
+    def __call__(
+        self,
+        execute: bool,
+        distance: float = 0.0,
+        velocity: float | None = None,
+        acceleration: float | None = None,
+        deceleration: float | None = None,
+        jerk: float | None = None,
+        buffer_mode: str = ABORTING,
+    ) -> None:
+        if self._rises(execute):
+            motion = dynamics_of(acceleration, deceleration, jerk) | {"distance": distance, "velocity": velocity}
+            self._start(self.command, buffer_mode, **motion)
 
 
-class MotionBlock(ExecuteBlock):
-    """A motion with a buffer mode."""
-
-    def _move(self, command: str, *, buffer_mode: str = ABORTING, **arguments: Any) -> None:
-        self._start(command, buffer_mode, **arguments)
-
-
-class MC_MoveAbsolute(MotionBlock):
+class MC_MoveAbsolute(PositionBlock):
     """Positioning to `position`."""
 
-    def __call__(self, execute: bool, position: float = 0.0, **inputs: Unpack[Inputs]) -> None:
-        if self._rises(execute):
-            self._move("move_absolute", target=position, **inputs)
+    command = "move_absolute"
+    argument = "target"
 
 
-class MC_MoveRelative(MotionBlock):
-    """Positioning over `distance` from the set position at which it begins."""
-
-    def __call__(self, execute: bool, distance: float = 0.0, **inputs: Unpack[Inputs]) -> None:
-        if self._rises(execute):
-            self._move("move_relative", distance=distance, **inputs)
-
-
-class MC_MoveAdditive(MotionBlock):
-    """Positioning over `distance` from the target of the motion before."""
-
-    def __call__(self, execute: bool, distance: float = 0.0, **inputs: Unpack[Inputs]) -> None:
-        if self._rises(execute):
-            self._move("move_additive", distance=distance, **inputs)
-
-
-class MC_MoveModulo(MotionBlock):
+class MC_MoveModulo(PositionBlock):
     """Positioning of a modulo axis; the sign of `position` is the direction, its magnitude has whole turns in it."""
 
-    def __call__(self, execute: bool, position: float = 0.0, **inputs: Unpack[Inputs]) -> None:
-        if self._rises(execute):
-            self._move("move_modulo", position=position, **inputs)
+    command = "move_modulo"
+    argument = "position"
+
+
+class MC_MoveRelative(DistanceBlock):
+    """Positioning over `distance` from the set position at which it begins."""
+
+    command = "move_relative"
+
+
+class MC_MoveAdditive(DistanceBlock):
+    """Positioning over `distance` from the target of the motion before."""
+
+    command = "move_additive"
 
 
 class MC_MoveSuperimposed(ExecuteBlock):
@@ -85,8 +98,8 @@ class MC_MoveSuperimposed(ExecuteBlock):
         jerk: float | None = None,
     ) -> None:
         if self._rises(execute):
-            ramps: dict[str, Any] = {"acceleration": acceleration, "deceleration": deceleration, "jerk": jerk}
-            self._start("move_superimposed", distance=distance, velocity_difference=velocity_difference, **ramps)
+            motion = dynamics_of(acceleration, deceleration, jerk)
+            self._start("move_superimposed", distance=distance, velocity_difference=velocity_difference, **motion)
 
 
 class MC_MoveVelocity(EndlessBlock):
@@ -101,15 +114,24 @@ class MC_MoveVelocity(EndlessBlock):
         """The unit moves at the commanded velocity times its override."""
         return self._reached
 
-    def __call__(self, execute: bool, velocity: float = 0.0, **inputs: Unpack[Ramps]) -> None:
+    def __call__(
+        self,
+        execute: bool,
+        velocity: float = 0.0,
+        acceleration: float | None = None,
+        deceleration: float | None = None,
+        jerk: float | None = None,
+        buffer_mode: str = ABORTING,
+    ) -> None:
         if not self._rises(execute):
             return
         self._velocity = velocity
-        mode, ramps = inputs.pop("buffer_mode", ABORTING), dict(inputs)
+        ramps = dynamics_of(acceleration, deceleration, jerk)
         if self.unit.kind == "spindle":
-            self._start("start", mode, direction="ccw" if velocity < 0.0 else "cw", speed_rpm=abs(velocity), **ramps)
+            turn = {"direction": "ccw" if velocity < 0.0 else "cw", "speed_rpm": abs(velocity)}
+            self._start("start", buffer_mode, **turn, **ramps)
         else:
-            self._start("move_velocity", mode, velocity=velocity, **ramps)
+            self._start("move_velocity", buffer_mode, velocity=velocity, **ramps)
 
     def _while_active(self) -> None:
         block = self.unit.block
@@ -161,14 +183,14 @@ class MC_Stop(ExecuteBlock):
 
 
 class MC_Home(ExecuteBlock):
-    """Homing, as the parameters of the unit say."""
+    """Homing, as the parameters of the unit say; `position` of the reference point of an axis instead of P-AXIS-00152."""
 
-    def __call__(self, execute: bool) -> None:
+    def __call__(self, execute: bool, position: float | None = None) -> None:
         if self._rises(execute):
-            self._start("home")
+            self._start("home", position=position)
 
 
-class MC_OrientSpindle(MotionBlock):
+class MC_OrientSpindle(ExecuteBlock):
     """M19: positioning of a spindle to `position` within a turn, at `velocity` in rpm, P-AXIS-00209 without it."""
 
     def __call__(
@@ -180,5 +202,9 @@ class MC_OrientSpindle(MotionBlock):
         buffer_mode: str = ABORTING,
     ) -> None:
         if self._rises(execute):
-            arguments = {"position_deg": position, "speed_rpm": velocity, "direction": direction}
-            self._move("orient", buffer_mode=buffer_mode, **arguments)
+            self._start("orient", buffer_mode, position_deg=position, speed_rpm=velocity, direction=direction)
+
+
+def dynamics_of(acceleration: float | None, deceleration: float | None, jerk: float | None) -> dict[str, Any]:
+    """As arguments of a command."""
+    return {"acceleration": acceleration, "deceleration": deceleration, "jerk": jerk}

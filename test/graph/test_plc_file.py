@@ -1,0 +1,132 @@
+"""A PLC in a file in the graph: equal to the offline run; a PLC that raises or takes too long stops the machine."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from graph_support import MILL, PTP, run, states_equal, verified
+
+from cnc_ptp.recording.reader import read_recording
+
+ROOT = Path(__file__).parents[2]
+EXAMPLES = ROOT / "examples"
+JOBS = {
+    "tool changer": (
+        MILL, "--plc", EXAMPLES / "plc_tool_changer.py", "--program", EXAMPLES / "plc_tool_changer.nc",
+        "--scenario", EXAMPLES / "plc_tool_changer.yaml",
+    ),
+    "generator": (PTP, "--plc", EXAMPLES / "plc_setpoint_generator.py"),
+}  # fmt: skip
+
+MOVES = """
+from cnc_ptp.plc.plcopen import MC_GearIn, MC_GearOut, MC_MoveAbsolute, MC_MoveRelative, MC_Stop
+
+
+class Plc:
+    def __init__(self, io):
+        x, y = io.axis("x"), io.axis("y")
+        self.gear, self.out, self.move = MC_GearIn(y), MC_GearOut(y), MC_MoveAbsolute(x)
+        self.stop, self.back = MC_Stop(x), MC_MoveRelative(x)
+
+    def cycle(self, io):
+        self.gear(True, master="x", ratio_numerator=-1, ratio_denominator=2)
+        self.move(self.gear.in_gear or self.move.execute, position=500.0, velocity=700.0)
+        self.stop(io.time > 0.4 and not self.stop.done)
+        self.back(io.time > 1.2, distance=-io.axis("x").actual_position)
+        self.out(self.back.done)
+        io.done(self.out.done)
+"""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("plc")
+    (folder / "moves.py").write_text(MOVES)
+    for name, job in {**JOBS, "moves": (PTP, "--plc", folder / "moves.py")}.items():
+        run("simulate", *job, "--record", folder / f"{name}.mcap")
+    return folder
+
+
+@pytest.mark.parametrize("options", [[], ["--free-run"], ["--composed"]], ids=str)
+@pytest.mark.parametrize("name", ["tool changer", "generator", "moves"])
+def test_a_plc_in_the_graph_equals_the_offline_run(folder, name, options):
+    job = {**JOBS, "moves": (PTP, "--plc", folder / "moves.py")}[name]
+    recording = folder / "graph.mcap"
+    output = run("run", *job, *options, "--record", recording).stdout
+    assert "lost 0, computed twice 0" in output and "refused" not in output
+    assert states_equal(folder / f"{name}.mcap", recording) == []
+    verified(recording)
+    events = [
+        [(event.cycle, event.text) for event in read_recording(path).events if event.source == "plc"]
+        for path in (folder / f"{name}.mcap", recording)
+    ]
+    assert events[0] == events[1]
+
+
+@pytest.mark.parametrize("options", [[], ["--composed"]], ids=str)
+def test_a_recording_with_a_trigger_begins_with_the_same_block(folder, options):
+    job = (PTP, "--plc", EXAMPLES / "plc_setpoint_generator.py", "--record-when", "x.set_position > 100")
+    run("simulate", *job, "--record", folder / "a.mcap")
+    run("run", *job, "--free-run", *options, "--record", folder / "b.mcap")
+    assert states_equal(folder / "a.mcap", folder / "b.mcap") == []
+    states = verified(folder / "b.mcap").states
+    assert {int(rows["cycle"][0]) for rows in states.values()} == {int(states["/x/state"]["cycle"][0])}
+    assert states["/x/state"]["set_position"][:10].max() > 100.0 and states["/x/state"]["cycle"][0] > 200
+
+
+FAULT = """
+from cnc_ptp.plc.plcopen import MC_MoveAbsolute
+
+
+class Plc:
+    def __init__(self, io):
+        self.moves = [MC_MoveAbsolute(io.axis(name)) for name in ("x", "y")]
+
+    def cycle(self, io):
+        for move in self.moves:
+            move(True, position=1000.0, velocity=300.0)
+        if io.cycle == 600:
+            {fault}
+"""
+FAULTS = {
+    "raise ValueError('no tool')": "ValueError: no tool",
+    "while True: pass": "the PLC cycle takes longer than 200 ms (P-MACH watchdog_ms)",
+    "__import__('time').sleep(3.0)": "the PLC cycle takes longer than 200 ms (P-MACH watchdog_ms)",
+}
+
+
+@pytest.mark.parametrize("options", [[], ["--composed"]], ids=str)
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_plc_that_fails_stops_the_machine_on_its_ramps(tmp_path, fault, options):
+    file, recording = tmp_path / "plc.py", tmp_path / "run.mcap"
+    file.write_text(FAULT.format(fault=fault))
+    output = run("run", PTP, "--plc", file, *options, "--record", recording, expect=1)
+    recorded = verified(recording)
+    (error,) = [event for event in recorded.events if event.severity == 2]
+    assert (error.cycle, error.line) == (600, 14)
+    assert error.error_id == (22161 if "raise" in fault else 22162)
+    assert error.text == (f"plc plc: plc.py:14 '{fault}': {FAULTS[fault]}; everything is stopped and the run ends")
+    assert error.text in output.stderr
+    x, y = (recorded.states[f"/{axis}/state"] for axis in ("x", "y"))
+    assert x["set_velocity"][-1] == 0.0 and np.array_equal(x["set_position"], y["set_position"])
+    assert x["set_position"][-1] < 1000.0 and not x["error_id"].any()
+
+
+def test_a_plc_that_cannot_be_broken_off_is_a_silent_one(tmp_path):
+    """It holds the interpreter itself: no signal is handled, no heartbeat sent."""
+    file = tmp_path / "plc.py"
+    hang = "import ctypes; ctypes.PyDLL(None).sleep(5)"
+    file.write_text(FAULT.format(fault=hang))
+    output = run("run", PTP, "--plc", file, expect=1)
+    assert "P-ERR-26101 axis x: no block of 'plc' came within the watchdog time" in output.stderr
+
+
+def test_a_file_that_cannot_be_used_starts_no_node(tmp_path):
+    file = tmp_path / "plc.py"
+    file.write_text(
+        "class Plc:\n    def __init__(self, io):\n        io.axis('q')\n    def cycle(self, io):\n        pass\n"
+    )
+    output = run("run", PTP, "--plc", file, expect=2)
+    assert "P-ERR-25104 PLC file" in output.stderr and "the machine has no axis 'q'" in output.stderr
