@@ -20,6 +20,7 @@ from cnc_ptp.protocol.commands import (
     OF_PLC,
     check_arguments,
     check_sendable,
+    with_floats,
 )
 
 Rows = Sequence[Sequence[float]]
@@ -67,6 +68,7 @@ class Asking:
             if (convert := CONVERTED.get(name)) is not None:
                 given[name] = convert(value)
         self._check(command, given)
+        given = with_floats(self.kind, command, given)
         return self._session.ask(self.name, command, given), given
 
     def _check(self, command: str, given: dict[str, Any]) -> None:

@@ -33,6 +33,7 @@ from cnc_ptp.nodes.client.latest_blocks import GONE as SILENCE
 from cnc_ptp.nodes.client.latest_blocks import GONE_TEXT
 from cnc_ptp.nodes.client.machine_client import NO_ANSWER, PATIENCE, MachineClient
 from cnc_ptp.nodes.polling_node import chain
+from cnc_ptp.nodes.process import take_priority
 from cnc_ptp.nodes.topics import BLOCK_CLASSES, BLOCK_TYPES, BLOCKS, COMMAND, EVENT, block_topic
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import CommandRecord, CycleBlock, Event, read_values
@@ -148,8 +149,9 @@ class GraphLink(Link):
     def _jog(self, axis: str, velocity: float, client: MachineClient) -> Reply:
         """Raises CncError 26136, 26144, 26145."""
         if axis not in self._jogs:
+            take_priority([threading.get_native_id()])  # other busy programs must not cause a silence, which ends a jog
             self._jogs[axis] = Jogging(axis, JogSender(client, axis))
-        return self._jogs[axis].ask(client, f"axis {axis}: {JOG}", velocity)
+        return self._jogs[axis].ask(client, f"axis {axis}: {JOG}", velocity, self.seen.cycle)
 
     # time
 
@@ -222,10 +224,11 @@ class Jogging:
     def is_active(self) -> bool:
         return self._sender.velocity != 0.0
 
-    def ask(self, client: MachineClient, what: str, velocity: float) -> Reply:
-        """Sends another velocity and waits for the record of its command."""
-        if velocity == self._sender.velocity and self._reply is not None:
-            return self._reply
+    def ask(self, client: MachineClient, what: str, velocity: float, cycle: int) -> Reply:
+        """Sends another velocity and waits for the record of its command; `cycle`: now."""
+        if velocity == self._sender.velocity:
+            nothing_to_do = Reply(cycle, 0, "", {}, 0)
+            return self._reply if self._reply is not None and velocity else nothing_to_do
         self._records.clear()
         self._ignored = None
         heard = client.spin_until(lambda: self._sender.is_heard, PATIENCE)

@@ -114,8 +114,12 @@ class Job:
             raise CncError(UNSEEN, reason, "how it has ended is not known")
 
     def _is_over(self) -> bool:
-        unseen = self._session.link.seen.ended_unseen(self.unit, self.number, self.cycle)
-        return self.ended or self.reached or unseen
+        """It has ended and everybody knows: the next command may be for a unit that would still take it for active."""
+        seen = self._session.link.seen
+        event = seen.job_event(self.unit, self.number)
+        if self.ended:
+            return event is None or seen.is_known_to_all(event.cycle)
+        return self.reached or seen.ended_unseen(self.unit, self.number, self.cycle)
 
     def _failure(self) -> Turns:
         """Raises the error of the unit with its text, which may come after its number."""

@@ -21,7 +21,7 @@ Kind = TypeVar("Kind", Axis, Spindle, Channel)
 
 
 class Machine:
-    """The units of a machine by name: `m.x`, `m["x"]`; typed in `m.axes`, `m.spindles`, `m.channels`, `m.channel`, `m.plc`.
+    """The units of a machine by name: `m.x`, `m["x"]`; typed in `m.axes`, `m.spindles`, `m.channels`; `m.plc`.
 
     Made by `start` (a graph of its own), `connect` (a graph that runs already) or `offline` (no graph at all); the
     calls are the same. Offline, time passes only while the program waits: in `wait`, `wait_until`, `run_for` and
@@ -165,7 +165,7 @@ class Machine:
     # the end
 
     def close(self) -> None:
-        """The end; offline, and of a graph that was started, everything stops on its ramps. A second call has no effect."""
+        """The end: an offline machine, or a graph that was started, stops on its ramps. A second call has no effect."""
         if self._session.closed:
             return
         self._session.closed = True

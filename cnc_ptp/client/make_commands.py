@@ -91,10 +91,10 @@ def returned(kind: str, command: str) -> str:
 
 
 def arguments_of(kind: str, command: str) -> dict[str, Argument]:
-    """Those that a client gives: first what must be given."""
+    """Those that a client gives: first what must be given, a master before all else."""
     known = {name: argument for name, argument in COMMANDS[kind][command].items() if name not in HIDDEN}
-    must = {name: argument for name, argument in known.items() if is_needed(kind, command, name)}
-    return {**must, **known}
+    must = [name for name in known if is_needed(kind, command, name)]
+    return {name: known[name] for name in sorted(known, key=lambda name: (name not in must, name != "master"))}
 
 
 def is_needed(kind: str, command: str, name: str) -> bool:

@@ -90,6 +90,10 @@ class Observations:
             return False
         return block.job != job and (event is None or event.status == JobStatus.ACTIVE)
 
+    def is_known_to_all(self, cycle: int) -> bool:
+        """Every unit has computed a block after that of a cycle: channels and PLC know then what happened in it."""
+        return len(self.blocks) == len(self._jobs) and all(b.first_cycle > cycle for b in self.blocks.values())
+
     def fault(self, unit: str, error_id: int, cycle: int) -> Event | None:
         """The newest fault of a unit with this number, from a cycle on."""
         faults = [event for event in self._faults[unit] if event.error_id == error_id and event.cycle >= cycle]

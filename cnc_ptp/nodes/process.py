@@ -6,7 +6,7 @@ import hashlib
 import os
 import socket
 import sys
-from collections.abc import Callable, MutableMapping, Sequence, Set
+from collections.abc import Callable, Iterable, MutableMapping, Sequence, Set
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -65,13 +65,13 @@ def set_environment(environment: MutableMapping[str, str], rmw: str) -> None:
     environment[PROFILE] = str(Path(__file__).with_name("localhost.xml"))
 
 
-def take_priority() -> None:
-    """Real-time scheduling for the threads of this process, where the system allows it.
+def take_priority(threads: Iterable[int | str] | None = None) -> None:
+    """Real-time scheduling for threads of this process, None = all, where the system allows it.
 
     Root may, and users to whom limits.conf gives rtprio; a node then keeps its time besides other busy programs. Later
     threads and processes do not inherit it.
     """
-    for thread in os.listdir("/proc/self/task"):
+    for thread in os.listdir("/proc/self/task") if threads is None else threads:
         with suppress(PermissionError, ProcessLookupError):
             os.sched_setscheduler(int(thread), os.SCHED_RR | os.SCHED_RESET_ON_FORK, os.sched_param(PRIORITY))
 

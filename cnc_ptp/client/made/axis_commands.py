@@ -223,36 +223,36 @@ class AxisCommands(Asking):
         """
         return self._answer("external_setpoints", setpoints=setpoints, file=file)
 
-    def couple(self, factor: float, master: str) -> Job:
+    def couple(self, master: str, factor: float) -> Job:
         """Linear slave.
 
-        factor  coupling factor, signed
         master  name of the master
+        factor  coupling factor, signed
         """
-        return self._job("couple", factor=factor, master=master)
+        return self._job("couple", master=master, factor=factor)
 
-    def couple_gantry(self, difference_limit: float, master: str) -> Job:
+    def couple_gantry(self, master: str, difference_limit: float) -> Job:
         """Gantry: linear slave of factor 1 with monitored actual positions.
 
-        difference_limit [mm, °]  largest difference of the actual positions
         master  name of the master
+        difference_limit [mm, °]  largest difference of the actual positions
         """
-        return self._job("couple_gantry", difference_limit=difference_limit, master=master)
+        return self._job("couple_gantry", master=master, difference_limit=difference_limit)
 
-    def couple_cyclic(self, acc_bound: float, master: str) -> Job:
+    def couple_cyclic(self, master: str, acc_bound: float) -> Job:
         """Slave with a factor that is set cyclically.
 
-        acc_bound [mm/s², °/s²]  largest acceleration by a change of the factor
         master  name of the master
+        acc_bound [mm/s², °/s²]  largest acceleration by a change of the factor
         """
-        return self._job("couple_cyclic", acc_bound=acc_bound, master=master)
+        return self._job("couple_cyclic", master=master, acc_bound=acc_bound)
 
     def couple_flying_saw(
         self,
+        master: str,
         factor: float,
         master_position: float,
         slave_position: float,
-        master: str,
         *,
         velocity: float | None = None,
         acceleration: float | None = None,
@@ -261,10 +261,10 @@ class AxisCommands(Asking):
     ) -> Job:
         """Synchronises with a moving master from given positions on.
 
+        master  name of the master
         factor  coupling factor, signed
         master_position [mm, °]  master, when both are synchronous
         slave_position [mm, °]  slave, when both are synchronous
-        master  name of the master
         velocity [mm/s, °/s]  largest velocity; left out: the smaller of P-AXIS-00212 and P-MACH-00008
         acceleration [mm/s², °/s²]  largest acceleration; left out: P-AXIS-00001
         deceleration [mm/s², °/s²]  largest deceleration; left out: P-AXIS-00002
@@ -272,10 +272,10 @@ class AxisCommands(Asking):
         """
         return self._job(
             "couple_flying_saw",
+            master=master,
             factor=factor,
             master_position=master_position,
             slave_position=slave_position,
-            master=master,
             velocity=velocity,
             acceleration=acceleration,
             deceleration=deceleration,

@@ -1,0 +1,364 @@
+"""The client with an offline machine: time passes only in waits, and what it records replays to the bit."""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import pytest
+from client_stories import EXPECTED, refusal, story
+from graph_support import verified
+from machine_support import ROOT
+
+from cnc_ptp.client import AxisStateCode, ChannelStateCode, CncError, JobStatus, Machine, UnknownUnit
+from cnc_ptp.recording.reader import read_recording
+
+MILL = ROOT / "config" / "mill.yaml"
+PTP = ROOT / "config" / "ptp.yaml"
+
+
+@pytest.fixture
+def m():
+    with Machine.offline(MILL) as machine:
+        yield machine
+
+
+@pytest.fixture
+def ptp():
+    with Machine.offline(PTP) as machine:
+        yield machine
+
+
+def test_the_story_is_recorded_and_replays_to_the_bit(tmp_path: Path) -> None:
+    with Machine.offline(MILL, record=tmp_path / "a.mcap") as m:
+        assert story(m, tmp_path) == EXPECTED
+    recorded = verified(tmp_path / "a.mcap")
+    assert recorded.complete and recorded.states["/x/state"]["set_velocity"][-1] == 0.0
+    refused = next(record for record in recorded.commands if record.error_id == 120002)
+    assert refused.values == {"target": 100000.0, "limit": 300.0} and refused.job == 0
+    assert [record.job for record in recorded.commands if record.command == "start" and record.target == "s"] == [1]
+
+
+def test_two_runs_are_equal_to_the_bit(tmp_path: Path) -> None:
+    files = []
+    for _ in range(2):
+        with Machine.offline(MILL, record=tmp_path / "a.mcap") as m:
+            m.x.move_absolute(30).wait()
+            m.s.start(300)
+            m.run_for(0.5)
+        files.append((tmp_path / "a.mcap").read_bytes())
+    assert files[0] == files[1]
+
+
+def test_time_passes_only_while_the_program_waits(m: Machine) -> None:
+    assert (m.cycle, m.time, m.cycle_time) == (10, 0.01, 0.001)
+    job = m.x.move_absolute(10)
+    assert (m.cycle, job.cycle, job.status, job.done) == (10, 10, None, False)
+    m.run_for(0.005)
+    assert (m.cycle, job.status) == (20, JobStatus.ACTIVE)
+    m.run_for(1.0)
+    assert (m.cycle, job.status, job.done, job.ended) == (1020, JobStatus.DONE, True, True)
+    assert repr(job) == "<job 1 of x: move_absolute, done>"
+
+
+def test_states_are_those_of_the_recording(tmp_path: Path) -> None:
+    with Machine.offline(PTP, record=tmp_path / "a.mcap") as m:
+        m.c.move_modulo(-450.0)
+        states = [*m.c.states(duration=0.3)]
+        channel = m["c"].state
+    rows = read_recording(tmp_path / "a.mcap").states["/c/state"]
+    assert [state.cycle for state in states] == [*range(10, 310)] and channel == states[-1]
+    for state in states:
+        row = rows[rows["cycle"] == state.cycle][0]
+        assert state._asdict() == {name: row[name] for name in state._fields}
+    assert {state.set_direction for state in states} == {0, -1}
+    assert states[-1].set_position_modulo != states[-1].set_position
+
+
+def test_states_of_spindle_and_channel(m: Machine, tmp_path: Path) -> None:
+    m.s.start(300, direction="ccw").wait()
+    state = m.s.state
+    assert state.set_speed_rpm == -300.0 and state.speed_reached is True and state.gear == 1
+    assert m.channel.state.state is ChannelStateCode.IDLE and m.channel.state.override_percent == 100.0
+    assert m.x.state.state is AxisStateCode.STANDSTILL
+    assert [state.cycle for state in m.channels["channel"].states(0.02)] == [*range(m.cycle - 20, m.cycle)]
+
+
+def test_a_refusal_has_number_text_and_values(m: Machine) -> None:
+    number, text, values = refusal(lambda: m.x.move_absolute(20, velocity=501.0))
+    assert number == 23004 and values["limit"] == 500.0
+    assert text == (
+        "axis x: move_absolute refused: velocity 501.0 mm/s is above the maximum 500.0 mm/s (P-AXIS-00212); "
+        "nothing was changed"
+    )
+
+
+@pytest.mark.parametrize(
+    ("call", "text"),
+    [
+        (lambda m: m.x.move_absolute("far"), "22001 axis x: move_absolute refused: target = 'far' is not a number; nothing was changed"),
+        (lambda m: m.x.move_absolute(float("nan")), "22001 axis x: move_absolute refused: target = nan is not finite; nothing was changed"),
+        (lambda m: m.x.move_absolute(1, velocity=0), "22001 axis x: move_absolute refused: velocity = 0 must be greater than 0; nothing was sent"),
+        (lambda m: m.s.start(100, direction="up"), "22001 spindle s: start refused: direction = 'up' is not cw or ccw; nothing was changed"),
+        (lambda m: m.y.couple_cam(master="x"), "22001 axis y: couple_cam refused: argument 'table' is missing; nothing was changed"),
+        (
+            lambda m: m.y.couple_cam("x", [[0, 0], [1, 1, 1]]),
+            "22001 axis y: couple_cam refused: point 2 of the table, [1, 1, 1], is no pair of numbers (master, slave); nothing was sent",
+        ),
+        (
+            lambda m: m.y.couple_cam(file="/nowhere.csv", master="x"),
+            "26110 cam file /nowhere.csv cannot be read: No such file or directory; nothing was started",
+        ),
+        (
+            lambda m: m.x.external_setpoints([[0, 0.0, 0.0, 0.0, 2]]),
+            "22001 axis x: external_setpoints refused: setpoint of cycle 0: direction = 2 is not one of -1, 0, 1; nothing was changed",
+        ),
+        (lambda m: m.plc.acknowledge(7), "22013 plc plc: acknowledge refused: no request 7 waits; nothing was changed. Waiting: none"),
+        (lambda m: m.xx, "26111 the machine has no unit 'xx'; did you mean x?; nothing was sent. Known: plc, channel, s, x, y, z"),
+        (lambda m: m["q"], "26111 the machine has no unit 'q'; nothing was sent. Known: plc, channel, s, x, y, z"),
+        (lambda m: m.axes["s"], "26111 the machine has no axis 's'; nothing was sent. Known: x, y, z"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_asked(m: Machine, call, text: str) -> None:
+    number, message, _ = refusal(lambda: call(m))
+    assert f"{number} {message}" == text
+    assert m.cycle == 10
+
+
+def test_an_unknown_unit_is_what_python_expects(ptp: Machine) -> None:
+    assert not hasattr(ptp, "q") and not hasattr(ptp, "_repr_html_")
+    with pytest.raises(KeyError):
+        ptp["q"]
+    with pytest.raises(UnknownUnit, match="the machine has no unit 'channel'"):
+        ptp.channel  # noqa: B018
+    assert {"x", "y", "plc", "run_for"} <= {*dir(ptp)}
+
+
+def test_a_wait_has_a_timeout_of_machine_time(m: Machine) -> None:
+    job = m.x.move_absolute(100, velocity=10)
+    number, text, _ = refusal(lambda: job.wait(0.5))
+    assert (number, text) == (26160, "axis x: move_absolute is not done after 0.5 s of machine time; it continues")
+    assert m.cycle == 510 and job.status is JobStatus.ACTIVE
+    job.wait()
+
+
+def test_a_job_that_another_one_replaces_is_aborted(m: Machine) -> None:
+    job = m.x.move_absolute(100)
+    m.run_for(0.1)
+    new = m.x.new_target(50)
+    assert refusal(job.wait)[:2] == (
+        26163,
+        "axis x: move_absolute was aborted at cycle 110; another command, or a loss of power, has ended it",
+    )
+    assert new.wait() is new and m.x.state.set_position == 50.0
+
+
+def test_a_job_that_fails_raises_the_fault_of_its_unit(m: Machine, tmp_path: Path) -> None:
+    job = m.channel.run("part.nc", text="N10 G1 X10 F6000\nN20 G1 X=V.A.ACT_POS.X*100\nM30\n")
+    with pytest.raises(CncError, match="line 2 ") as failed:
+        job.wait()
+    assert failed.value.number == m.channel.state.error_id > 0 and job.status is JobStatus.FAILED
+
+
+def test_a_wait_without_a_timeout_ends_where_nothing_will_move(m: Machine) -> None:
+    m.x.set_override(0)
+    job = m.x.move_absolute(100)
+    assert refusal(job.wait)[:2] == (
+        26164,
+        "axis x: move_absolute is not done: nothing has moved for 10 s of machine time, and nothing will; it continues",
+    )
+    m.x.set_override(100)
+    job.wait()
+    program = m.channel.run("part.nc", text="G1 Y1 F6000\nM0\nG1 Y2\nM30\n")
+    assert refusal(program.wait)[1] == (
+        "channel channel: start is not done: nothing has moved for 10 s of machine time (channel channel waits in line 2 "
+        "for start), and nothing will; it continues"
+    )
+    assert m.channel.start().number == program.number
+    assert program.wait().done and (program.progress, program.time_left) == (1.0, 0.0)
+
+
+def test_a_program_tells_where_it_is(m: Machine) -> None:
+    job = m.channel.run("part.nc", text="N10 G1 X100 F6000\nM30\n")
+    m.run_for(0.5)
+    assert job.line == 1 and 0.3 < job.progress < 0.6 and job.time_left == pytest.approx(0.54, abs=0.1)
+    assert job.cancel().wait().done and job.status is JobStatus.ABORTED
+    m.x.move_absolute(0).wait()
+
+
+def test_endless_jobs_are_waited_for_until_they_do_what_was_commanded(ptp: Machine) -> None:
+    jog = ptp.x.jog(100).wait()
+    assert ptp.x.state.set_velocity == 100.0 and jog.reached and not jog.ended
+    saw = ptp.y.couple_flying_saw("x", 1.0, 400.0, 100.0).wait()
+    assert ptp.y.state.set_position == pytest.approx(100.0 + ptp.x.state.set_position - 400.0, abs=1e-9)
+    assert saw.reached and ptp.y.state.set_velocity == pytest.approx(100.0)
+    ptp.x.jog(0).wait()
+    assert jog.status is JobStatus.ABORTED and not jog.reached
+    assert ptp.x.jog(0).wait().done
+    leaves = ptp.y.decouple().wait()
+    assert leaves.ended
+
+
+def test_external_setpoints_as_a_series(ptp: Machine, tmp_path: Path) -> None:
+    series = [[cycle, 1e-5 * cycle * cycle, 0.02 * cycle, 20.0, 1] for cycle in range(1, 101)]
+    series.append([101, 0.1, 0.0, 0.0, 0])
+    ptp.x.external_enable("relative").wait()
+    begin = ptp.cycle
+    ptp.x.external_setpoints(series)
+    states = {state.cycle - begin: state for state in ptp.x.states(0.2)}
+    assert states[50].set_position == pytest.approx(0.025) and states[101].set_position == pytest.approx(0.1)
+    ptp.x.external_disable().wait()
+
+
+def test_tables_are_points_or_files(ptp: Machine, tmp_path: Path) -> None:
+    points = [[0, 0], [50, 10], [100, 0]]
+    (tmp_path / "cam.csv").write_text("master,slave\n0,0\n50,10\n100,0\n")
+    ptp.y.couple_cam("x", points).wait()
+    ptp.x.move_absolute(50).wait()
+    assert ptp.y.state.set_position == pytest.approx(10.0)
+    ptp.y.change_cam(file=str(tmp_path / "cam.csv"))
+    ptp.x.move_absolute(250).wait()
+    assert ptp.y.state.set_position == pytest.approx(10.0)
+
+
+def test_events_come_as_they_happen(m: Machine) -> None:
+    events = m.events(duration=1.0)
+    m.x.move_absolute(10)
+    assert [event.text for event in events] == ["x: Standstill -> DiscreteMotion", "x: DiscreteMotion -> Standstill"]
+    m.y.move_absolute(10)
+    first = next(iter(m.events()))
+    assert (first.source, first.cycle) == ("y", m.cycle - 10)
+
+
+def test_an_iterator_without_an_end_ends_where_nothing_will_come(m: Machine) -> None:
+    assert refusal(lambda: [*m.events()])[:2] == (
+        26164,
+        "no new event: nothing has moved for 10 s of machine time, and nothing will; it continues",
+    )
+
+
+def test_handshakes_by_hand(m: Machine) -> None:
+    waiting = []
+    m.plc.on_handshake(waiting.append)
+    job = m.channel.run("part.nc", text="M8\nG1 X10 F6000\nM30\n")
+    m.run_for(1.0)
+    (request,) = waiting
+    assert (request.kind, request.number, request.acknowledge_needed, job.ended) == ("M", 8, True, False)
+    m.plc.acknowledge(request.id)
+    job.wait()
+    m.plc.on_handshake(None)
+    m.channel.run("part.nc", text="M8\nM30\n").wait()
+    assert len(waiting) == 1
+
+
+def test_a_callback_that_raises_ends_the_wait(m: Machine) -> None:
+    def broken(request):
+        raise ValueError("no coolant")
+
+    m.plc.on_handshake(broken)
+    with pytest.raises(ValueError, match="no coolant"):
+        m.channel.run("part.nc", text="M8\nM30\n").wait()
+
+
+def test_the_end_stops_everything_on_its_ramps(tmp_path: Path) -> None:
+    with pytest.raises(ZeroDivisionError), Machine.offline(MILL, record=tmp_path / "a.mcap") as m:
+        m.x.move_absolute(250, velocity=100)
+        m.s.start(600)
+        m.run_for(0.5)
+        1 / 0  # noqa: B018
+    rows = verified(tmp_path / "a.mcap").states
+    assert rows["/x/state"]["set_velocity"][-1] == 0.0 and rows["/s/state"]["set_speed_rpm"][-1] == 0.0
+    assert 0.0 < rows["/x/state"]["set_position"][-1] < 250.0
+    assert abs(rows["/x/state"]["set_jerk"]).max() <= 50_000.0
+
+
+def test_nothing_works_after_the_end() -> None:
+    with Machine.offline(MILL) as m:
+        job = m.x.move_absolute(10)
+    assert refusal(job.wait)[0] == 26163
+    for call in (m.x.halt, lambda: m.run_for(1.0), lambda: [*m.events(1.0)]):
+        assert refusal(call)[0] == 26162
+    assert refusal(m.x.halt)[1] == "axis x: halt: the machine was closed; nothing was sent"
+    m.close()
+    assert repr(m).endswith("closed>")
+
+
+def test_a_run_that_the_plc_has_ended_is_over(m: Machine) -> None:
+    m.x.move_absolute(100)
+    m.plc.stop_all()
+    assert refusal(lambda: m.run_for(10.0))[:2] == (26161, "the machine has ended: its run has ended; its units stand")
+    assert refusal(m.x.halt)[:2] == (26115, "axis x: halt refused: the run has ended; nothing was changed")
+
+
+def test_the_recording_must_not_be_an_input(tmp_path: Path) -> None:
+    machine = tmp_path / "mill.yaml"
+    machine.write_text(MILL.read_text())
+    text = f"recording {machine} would overwrite the machine file {machine}; nothing was started"
+    assert refusal(lambda: Machine.offline(machine, record=machine))[:2] == (26117, text)
+
+
+def test_several_wait_in_an_event_loop(m: Machine) -> None:
+    async def motion(axis, targets):
+        return [((await axis.move_absolute(target)).number, m.cycle) for target in targets]
+
+    async def watch():
+        return [state.cycle async for state in m.x.states(0.1)]
+
+    async def all_of_it():
+        moves = asyncio.gather(motion(m.x, [50, 0]), motion(m.y, [10, 20, 30]))
+        states = await watch()
+        await m.run_for_async(0.1)
+        await m.wait_until_async(lambda: m.y.state.set_position > 25.0, timeout=10.0)
+        results = await moves
+        with pytest.raises(CncError, match="26160"):
+            await m.x.move_absolute(50).wait_async(0.05)
+        return results, states
+
+    (x, y), states = asyncio.run(all_of_it())
+    assert states == [*range(10, 110)]
+    assert [number for number, _ in y] == [1, 2, 3] and x[0][1] < x[1][1]
+
+
+def test_motions_in_an_event_loop_are_those_of_one_after_the_other() -> None:
+    async def both(m):
+        await asyncio.gather(*(axis.move_absolute(50) for axis in (m.x, m.y)))
+
+    with Machine.offline(MILL) as m:
+        asyncio.run(both(m))
+        together = m.cycle
+    with Machine.offline(MILL) as m:
+        jobs = [m.x.move_absolute(50), m.y.move_absolute(50)]
+        for job in jobs:
+            job.wait()
+        assert m.cycle == together
+
+
+def test_a_signal_acts_between_two_blocks(m: Machine) -> None:
+    """Ctrl-C in a long wait; the machine is whole, and can go on."""
+    job = m.x.move_absolute(300, velocity=0.5)
+    threading.Timer(0.3, signal.raise_signal, [signal.SIGINT]).start()
+    with pytest.raises(KeyboardInterrupt):
+        job.wait()
+    blocks = {block.first_cycle for block in m._session.link.seen.blocks.values()}
+    assert len(blocks) == 1 and signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    job.cancel().wait()
+
+
+def test_offline_loads_no_ros() -> None:
+    code = (
+        "import sys; from cnc_ptp.client import Machine\n"
+        f"with Machine.offline({str(MILL)!r}) as m: m.x.move_absolute(1).wait()\n"
+        "assert not any(name.split('.')[0] in ('rclpy', 'asyncio_') for name in sys.modules)"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=300)
+
+
+def test_time_is_that_of_the_machine(m: Machine) -> None:
+    begin = time.monotonic()
+    m.run_for(2.0)
+    assert m.time == pytest.approx(2.01) and time.monotonic() - begin < 300.0
