@@ -23,6 +23,8 @@ TOO_MANY_FILES = 26122
 MOST_FILES = 200
 """Programs that one program may call, directly or through others."""
 UTF_16: Final = "it is UTF-16 text; save it as UTF-8"
+UTF_32: Final = "it is UTF-32 text; save it as UTF-8"
+NO_TEXT: Final = "it is no text, its first characters are NUL"
 SHIPPED = Path(cnc_ptp.__path__[0]) / "nc" / "cycles"
 """Cycles that come with cnc_ptp; a program of the same name in the user's folder replaces one."""
 
@@ -45,8 +47,16 @@ def read_file(what: str, path: str) -> str:
         reason = why_not_utf_8(Path(path).read_bytes())
         raise CncError(UNREADABLE, f"{what} {path} cannot be read: {reason}", "nothing was started") from None
     if text[:1] and "\0" in text[:2]:
-        raise CncError(UNREADABLE, f"{what} {path} cannot be read: {UTF_16}", "nothing was started")
+        reason = of_other_width(text[:4].encode())
+        raise CncError(UNREADABLE, f"{what} {path} cannot be read: {reason}", "nothing was started")
     return text
+
+
+def of_other_width(begin: bytes) -> str:
+    """What a file is that begins with a mark of UTF-16 or UTF-32, or has a NUL among its first two characters."""
+    if begin in (b"\xff\xfe\0\0", b"\0\0\xfe\xff") or begin.count(0) == 3 != len(begin):
+        return UTF_32
+    return NO_TEXT if begin[:2] == b"\0\0" else UTF_16
 
 
 def first_bad_byte(data: bytes) -> int:
@@ -61,7 +71,7 @@ def first_bad_byte(data: bytes) -> int:
 def why_not_utf_8(data: bytes) -> str:
     """Where a text is none in UTF-8, and what it may be instead."""
     if data[:2] in (b"\xff\xfe", b"\xfe\xff") or b"\0" in data[:2]:
-        return UTF_16
+        return of_other_width(data[:4])
     place = first_bad_byte(data)
     line = data.count(b"\n", 0, place) + 1
     column = len(data[data.rfind(b"\n", 0, place) + 1 : place].decode("utf-8")) + 1
@@ -130,7 +140,8 @@ def scan_program(path: str, search: Search) -> tuple[int, dict[str, str]]:
             for line in lines:
                 count += 1
                 if count == 1 and "\0" in line[:2]:
-                    raise CncError(UNREADABLE, f"NC program {path} cannot be read: {UTF_16}", "nothing was started")
+                    reason = of_other_width(line[:4].encode())
+                    raise CncError(UNREADABLE, f"NC program {path} cannot be read: {reason}", "nothing was started")
                 text, before = before + line, ""
                 if line.endswith("\\\n") and len(text) < LONGEST:
                     before = text

@@ -16,18 +16,37 @@ from cnc_ptp.nc.modal_state import ModalState
 
 MOST_ERRORS: Final = 20
 """Errors of one interpretation."""
-FOLLOW: Final = frozenset(
+OF_THE_LINE: Final = frozenset(
     fault.number
     for fault in (
-        *(faults.FEED_MISSING, faults.DWELL_WITHOUT_SPEED, faults.SPEED_MISSING, faults.WORD_NOT_USED),
-        *(faults.CENTRE_NOT_IN_PLANE, faults.ARC_WITHOUT_CENTRE, faults.RADIUS_ZERO, faults.FULL_CIRCLE_BY_RADIUS),
-        *(faults.RADIUS_TOO_SMALL, faults.RADII_DIFFER, faults.MEASURING_NOWHERE, faults.MEASURING_CONTOURING),
-        *(faults.MEASURING_IN_CYCLE, faults.SPEED_ABOVE_GEAR),
-        *(value for value in vars(spindle_faults).values() if isinstance(value, faults.Fault)),
-        *(value for value in vars(coordinate_faults).values() if isinstance(value, faults.Fault)),
-        *(iso_faults.NO_MOTION, iso_faults.MACHINE_INCREMENTAL, iso_faults.RETRACT_BELOW, iso_faults.WORD_MISSING),
-        *(iso_faults.SPINDLE_STANDS, iso_faults.CYCLE_FEED),
+        *(spindle_faults.HOMING_NOT_ALONE, spindle_faults.HOMING_OF_NOTHING, spindle_faults.HOMING_ORDER),
+        *(spindle_faults.DYNAMICS_NOT_ALONE, spindle_faults.POSITION_ALONE, spindle_faults.POSITION_RANGE),
+        *(spindle_faults.PLC_SPINDLE, spindle_faults.GEAR_TWICE, spindle_faults.GEAR_IN_BRACKET),
+        *(spindle_faults.GEAR_AND_HOMING, spindle_faults.PITCH_TWICE, spindle_faults.PITCH_ZERO),
+        *(spindle_faults.COMMAND_NOT_ALONE, spindle_faults.COMMAND_ARGUMENTS, spindle_faults.LINK_GROUP),
+        *(spindle_faults.LINK_GROUP_DEFAULT, spindle_faults.LINK_RATIO, spindle_faults.LINK_DENOMINATOR),
+        *(spindle_faults.LINK_GANTRY, spindle_faults.LINK_ITSELF),
+        *(coordinate_faults.OFFSET_INDEX, coordinate_faults.AXES_MISSING, coordinate_faults.SCALE_FACTOR),
+        *(coordinate_faults.SYSTEM_NUMBER, coordinate_faults.SYSTEM_VALUES, coordinate_faults.ACTIVITY),
+        *(coordinate_faults.MIRROR_VALUE, coordinate_faults.MACHINE_TOOL),
     )
+)
+"""Errors that a line has whatever was before it."""
+FOLLOW: Final = (
+    frozenset(
+        fault.number
+        for fault in (
+            *(faults.FEED_MISSING, faults.DWELL_WITHOUT_SPEED, faults.SPEED_MISSING, faults.WORD_NOT_USED),
+            *(faults.CENTRE_NOT_IN_PLANE, faults.ARC_WITHOUT_CENTRE, faults.RADIUS_ZERO, faults.FULL_CIRCLE_BY_RADIUS),
+            *(faults.RADIUS_TOO_SMALL, faults.RADII_DIFFER, faults.MEASURING_NOWHERE, faults.MEASURING_CONTOURING),
+            *(faults.MEASURING_IN_CYCLE, faults.SPEED_ABOVE_GEAR, faults.PLANE_AXIS_MISSING),
+            *(value for value in vars(spindle_faults).values() if isinstance(value, faults.Fault)),
+            *(value for value in vars(coordinate_faults).values() if isinstance(value, faults.Fault)),
+            *(iso_faults.NO_MOTION, iso_faults.MACHINE_INCREMENTAL, iso_faults.RETRACT_BELOW, iso_faults.WORD_MISSING),
+            *(iso_faults.SPINDLE_STANDS, iso_faults.CYCLE_FEED),
+        )
+    )
+    - OF_THE_LINE
 )
 """Errors that a block before them may have caused. LIMIT_POSITIVE and LIMIT_NEGATIVE are those of soft limits, too."""
 DEPENDS: Final = "what follows depends on it"

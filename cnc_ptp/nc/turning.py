@@ -69,7 +69,7 @@ def take_diameter(channel: Channel, state: ModalState, block: NcBlock, target: l
         return
     mirror = state.coordinates.mirror
     if mirror and mirror[axis.place] < 0.0:
-        raise _fault(turning_faults.MIRRORED, block, name, axis=name, g="G21, G22 or G23")
+        raise _fault(turning_faults.MIRRORED, block, name, axis=name, g="G21, G22, G23 or G351")
     radius = block.words[name] * state.coordinates.unit / 2.0
     if state.absolute and axis.absolute:
         if radius < 0.0:

@@ -77,7 +77,7 @@ _G_CODES = (
     GCode(21, "mirror", prepare=codes.mirror),
     GCode(22, "mirror", prepare=codes.mirror),
     GCode(23, "mirror", prepare=codes.mirror),
-    GCode(351, "mirror", later="mirroring of single axes"),
+    GCode(351, "mirror", function=codes.mirror_axes, takes_axes=True),
     GCode(33, "path", motion=thread_cutting.thread, words=thread_cutting.PITCH_WORDS),
     GCode(34, "path", motion=thread_cutting.thread, words=thread_cutting.PITCH_WORDS),
     GCode(35, "path", motion=thread_cutting.thread, words=thread_cutting.PITCH_WORDS),

@@ -215,7 +215,7 @@ def test_each_error_of_iso_belongs_to_a_word_and_each_key_is_one():
 
 
 def test_codes_that_stand_alone_are_their_own_example():
-    assert find("G17")[0].explanation.example == "G17" and find("G351")[0].explanation.example == ""
+    assert find("G17")[0].explanation.example == "G17" and find("G106")[0].explanation.example == ""
 
 
 def test_an_unknown_word():

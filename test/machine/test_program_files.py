@@ -213,6 +213,11 @@ def called(command: list[str]) -> int:
         ("G00 X1\nM30\n".encode("utf-16"), "it is UTF-16 text; save it as UTF-8"),
         ("G00 X1\nM30\n".encode("utf-16-le"), "it is UTF-16 text; save it as UTF-8"),
         ("G00 X1\nM30\n".encode("utf-16-be"), "it is UTF-16 text; save it as UTF-8"),
+        ("G00 X1\nM30\n".encode("utf-32"), "it is UTF-32 text; save it as UTF-8"),
+        ("G00 X1\nM30\n".encode("utf-32-le"), "it is UTF-32 text; save it as UTF-8"),
+        ("G00 X1\nM30\n".encode("utf-32-be"), "it is UTF-32 text; save it as UTF-8"),
+        (bytes(3), "it is no text, its first characters are NUL"),
+        (bytes(1000), "it is no text, its first characters are NUL"),
         ("G00 X1 ; ä\nM30\n".encode("utf-16-le"), "it is UTF-16 text; save it as UTF-8"),
         (
             "G00 X1\nY2 ; ø10 Hänge\n".encode().replace("ä".encode(), b"\xe4"),

@@ -7,6 +7,7 @@ from cnc_ptp.nc.check import check
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.plain_channel import plain_channel
 from cnc_ptp.nc.recovery import DEPENDS, ENOUGH, READS
+from cnc_ptp.parameters import Tool, ToolTable
 
 AXES = ("X", "Y", "Z")
 
@@ -33,6 +34,20 @@ def test_independent_errors_of_blocks_are_all_found() -> None:
 def test_what_may_only_follow_from_an_error_is_not_shown() -> None:
     """Line 3 has no feed because line 2 was left out, line 4 begins where line 2 would have ended."""
     assert found("G90\nG01 X10 F-5\nG01 X20\nG02 X40 I-15\nM30") == [(21022, 2, "")]
+
+
+def test_a_plane_that_was_left_out_is_missed_by_nobody() -> None:
+    """G18 was in the line with the error; the plane XY would need an axis that a lathe has not."""
+    lathe = plain_channel("XZ")._replace(tools=ToolTable({1: Tool(radius=1.0)}, True))
+    text = "G18 D1 G00 X5 F-1\nG41 G01 Z10 F100\nZ20\nG40 X9\nM30"
+    assert [(error.number, error.line) for error in check(text, "a.nc", lathe)] == [(21022, 1)]
+
+
+@pytest.mark.parametrize(
+    ("line", "number"), [("G74 X1.5", 21065), ("#SCALE ON X0", 21605), ("G159=99", 21600), ("G351 X2", 20860)]
+)
+def test_an_error_that_a_line_has_by_itself_is_shown_behind_another_one(line: str, number: int) -> None:
+    assert found(f"G01 X10 F-5\n{line}\nM30") == [(21022, 1, ""), (number, 2, "")]
 
 
 def test_behind_a_line_that_cannot_be_read_the_check_goes_on() -> None:

@@ -159,6 +159,19 @@ def mirror(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> 
     refresh(channel, state)
 
 
+def mirror_axes(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> tuple[Function, ...]:
+    """G351 X-1 Y1: X changes its sign, Y does not, the other axes as before. Raises ProgramError 20860."""
+    signs = list(state.coordinates.mirror or (1.0,) * len(channel.axes))
+    for place, value in axis_values(channel, state, block, code, scaled=False):
+        if abs(value) != 1.0:
+            axis = channel.axes[place]
+            raise faults.MIRROR_VALUE.at(block.source, block.source.column(axis), axis=axis, value=number(value))
+        signs[place] = value
+    state.coordinates.mirror = tuple(signs) if -1.0 in signs else ()
+    refresh(channel, state)
+    return ()
+
+
 def software_limit(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> tuple[Function, ...]:
     """G98 X-10: negative software limits in machine coordinates, G99: positive ones; within those of the lists."""
     limits = dict(state.coordinates.limits or {})

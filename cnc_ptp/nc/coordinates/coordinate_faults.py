@@ -21,6 +21,7 @@ IN_MACHINE = Fault(21618, "{command} is not possible between #MCS ON and #MCS OF
 MACHINE_ON = Fault(21619, "#MCS ON, but it is on already")
 MACHINE_OFF = Fault(21620, "#MCS OFF without #MCS ON")
 MACHINE_TOOL = Fault(21621, "#MCS ON [EX TOOL] is not available yet")
+MIRROR_VALUE = Fault(20860, "G351 with {axis}{value}: -1 mirrors axis {axis}, 1 does not")
 MIRROR_PRESET = Fault(20612, "{command} is not possible while {what}")
 LIMIT_POSITIVE = Fault(120002, "axis {axis}: {position} {unit} lies beyond the software limit {limit} {unit} of G99")
 LIMIT_NEGATIVE = Fault(120003, "axis {axis}: {position} {unit} lies beyond the software limit {limit} {unit} of G98")

@@ -1,0 +1,14 @@
+; G351: single axes; the others keep their sign
+G01 X10 Y5 Z1 F600
+G351 X-1
+X10 Y5
+G351 Z-1
+Z2
+G351 X+1 Y-1
+X10 Y10
+G02 X20 Y0 I0 J-10
+G18 G00 G21 X1
+G351 X1 Z1
+G17 X30 Y-7
+G20 X0 Y0 Z0
+M30
