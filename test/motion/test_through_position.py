@@ -46,7 +46,9 @@ def test_a_velocity_above_that_of_the_limits_is_reached_in_the_target_only() -> 
     profile = plan_through_position(0.0, 0.0, 0.0, 3000.0, 2600.0, LIMITS)
     last_ramp = 600.0 / 5000.0 + 5000.0 / 50000.0
     assert profile.state_at(profile.duration - last_ramp)[1] == pytest.approx(2000.0)
-    assert max(profile.sample([0.001 * k for k in range(int(1000 * (profile.duration - last_ramp)))])[1]) < 2000.0 + 1e-9
+    assert (
+        max(profile.sample([0.001 * k for k in range(int(1000 * (profile.duration - last_ramp)))])[1]) < 2000.0 + 1e-9
+    )
     assert profile.end == (3000.0, 2600.0, 0.0)
 
 
