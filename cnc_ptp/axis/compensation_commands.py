@@ -84,7 +84,8 @@ class CompensationCommands:
             axis.refuse(START, SUPERIMPOSED_RUNS, "a superimposed motion is active")
         if axis.coupled and not axis.on_path:
             return
-        if axis.state not in (S.DISCRETE_MOTION, S.STOPPING) and axis.ptp.job is None:
+        moves = axis.state in (S.DISCRETE_MOTION, S.STOPPING) or axis.ptp.job is not None
+        if not moves or axis.state == S.HOMING:
             state = state_name(axis.state)
             reason = f"no basic motion is active (the axis is in {state})"
             axis.refuse(START, NOTHING_TO_COMPENSATE, reason, state=state)

@@ -83,7 +83,7 @@ class ExternalCommands:
         if axis.coupled and axis.coupling is not None:
             master = axis.coupling.master
             axis.refuse(ENABLE, EXTERNAL_COUPLED, f"{master} is the master of the axis", master=master)
-        if axis.state == S.STOPPING:
+        if axis.state in (S.STOPPING, S.HOMING):
             state = state_name(axis.state)
             axis.refuse(ENABLE, NOT_READY, f"the axis is in {state}", state=state)
         enabled = axis.external.mode

@@ -34,6 +34,8 @@ class OverrideCommands:
         used = axis.override_filter.take(cycle, round(percent, OVERRIDE_DECIMALS))
         if used is None or axis.set_override(cycle, used) or axis.state not in (S.DISCRETE_MOTION, S.STOPPING):
             return None
+        if axis.ptp.job is None and axis.ptp.finished(cycle):
+            return None  # only a superimposed motion is left, which has no override
         reason = "the axis stops" if axis.ptp.job is None else "brake phase or level out of reach"
         return f"axis {axis.name}: override {percent} % does not change the active motion ({reason})"
 

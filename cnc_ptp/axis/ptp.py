@@ -9,7 +9,7 @@ from dataclasses import replace
 from math import ceil, copysign, inf, isinf
 
 from cnc_ptp.axis.job import Activation, Job, Start, leads_too_fast, planned, stronger
-from cnc_ptp.axis.tables import last_leg, peak_velocity, reaches, standing
+from cnc_ptp.axis.tables import constant_spans, last_leg, peak_velocity, reaches, standing
 from cnc_ptp.axis.two_stage import Request, Stage, velocity_stage
 from cnc_ptp.motion import (
     Limits,
@@ -172,12 +172,10 @@ class PtpGenerator:
 
     def _constant_from(self, cycle: int, velocity: float) -> int | None:
         """The first cycle from `cycle` on that has this constant speed; None if none has."""
-        rows = self._profile.rows
-        for (t, _, v, a, j), end in zip(rows, [*self._profile.starts[1:], inf], strict=True):
-            if a == j == 0.0 and abs(abs(v) - velocity) <= NEGLIGIBLE * velocity:
-                first = max(cycle, self._origin + ceil(t / self._cycle_time))
-                if (first - self._origin) * self._cycle_time < end:
-                    return first
+        for begin, end in constant_spans(self._profile, velocity):
+            first = max(cycle, self._origin + ceil(begin / self._cycle_time))
+            if (first - self._origin) * self._cycle_time < end:
+                return first
         return None
 
     def brakes_to(self, cycle: int, target: float) -> bool:

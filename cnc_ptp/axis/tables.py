@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
+from math import inf
 
 from cnc_ptp.motion import Profile
 from cnc_ptp.motion.profile import Segment
@@ -17,6 +18,14 @@ def standing(position: float) -> Profile:
 def reaches(profile: Profile, velocity: float) -> bool:
     """True when the table holds `velocity` (mm/s, either direction) without acceleration, even for an instant."""
     return any(abs(level - velocity) <= 1e-9 * velocity for level in _levels(profile.rows))
+
+
+def constant_spans(profile: Profile, velocity: float) -> Iterator[tuple[float, float]]:
+    """Begin and end, in s from the start of the table, of each segment with this constant speed (mm/s)."""
+    ends = [*profile.starts[1:], inf]
+    for (t, _, v, a, j), end in zip(profile.rows, ends, strict=True):
+        if a == j == 0.0 and abs(abs(v) - velocity) <= 1e-9 * velocity:
+            yield t, end
 
 
 def last_leg(profile: Profile) -> Sequence[Segment]:

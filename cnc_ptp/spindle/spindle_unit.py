@@ -14,7 +14,7 @@ from cnc_ptp.parameters import GearParameters, SpindleParameters
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Refusal, Severity, SpindleBlock
-from cnc_ptp.protocol.jobs import JOBS
+from cnc_ptp.protocol.jobs import JOBS, JobStatus
 from cnc_ptp.protocol.spindle_states import held_by_override
 from cnc_ptp.protocol.unit import PLC, UPSTREAM_LOST, Handler, Unit
 from cnc_ptp.spindle.command_queue import MOTION, CommandQueue, QueuedCommand
@@ -279,6 +279,7 @@ class SpindleUnit(Unit):
             self._path.check("reset")
         self._report_lost_homings(cycle, "reset")
         self._power.do_reset(cycle)
+        self.jobs.end(cycle, JobStatus.ABORTED)
         self._queue.clear()
         self._passed_on.append(Command(self.name, "stop", {"homes": False}))
 

@@ -9,16 +9,20 @@ from machine_support import UnitBench, axis_bench
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import StatusBit, state_name
 
-PTP_MOTION = ("moving", "braking", "held", "returning", "halting", "compensating", "external_beside")
+PTP_MOTION = ("moving", "braking", "held", "returning", "halting", "adding", "compensating", "external_beside")
 STOPPED = ("stopping", "waiting", "powered_off_in_motion")
 IN_ERROR = ("error_ramp", "error_stop")
 AT_REST = ("disabled", "standing")
 JOGGING = ("jogging", "jog_ended")
+ADDING = ("adding", "only_adding")
+FREE = (*PTP_MOTION[:-2], *JOGGING, "velocity", "only_adding")
+"""In motion, and nothing else keeps another motion from aborting it."""
 EXTERNAL = ("external", "external_beside")
 NAME = {state: state_name(code) for state, (_, code) in STATES.items()}
 """The PLCopen name of each situation's state."""
 
-MOVES = ("move_absolute", "move_relative", "move_modulo")
+MOVES = ("move_absolute", "move_relative", "move_modulo", "move_velocity")
+MODES = ("move_absolute aborting", "move_absolute buffered", "move_velocity aborting")
 REDIRECTIONS = ("new_target", "new_velocity_and_target")
 STOPS = ("stop", "halt", "emergency_stop")
 ENABLES = ("external_enable absolute", "external_enable relative")
@@ -55,13 +59,31 @@ REFUSALS: Texts = {
     ),
     **refused(
         23005,
+        MODES,
+        ("disabled", *STOPPED, "on_path", *IN_ERROR),
+        "the axis is in {state}, it must be in Standstill, DiscreteMotion or ContinuousMotion",
+    ),
+    **refused(23015, (MODES[0], MODES[2]), ("compensating",), "a position compensation is active"),
+    **refused(23005, ("move_superimposed",), ("disabled", *STOPPED, *IN_ERROR), "the axis is in {state}"),
+    **refused(23015, ("move_superimposed",), ("compensating",), "a position compensation is active"),
+    **refused(23027, ("move_superimposed",), EXTERNAL, "external setpoints are enabled"),
+    **refused(
+        23059,
+        ("move_superimposed", "compensation_start", "external_enable relative"),
+        ADDING,
+        "a superimposed motion is active",
+    ),
+    **refused(23005, ("set_position",), ("on_path",), "the axis is in {state}"),
+    **refused(23027, ("set_position",), EXTERNAL, "external setpoints are enabled; disable them"),
+    **refused(
+        23005,
         ("jog",),
         tuple(state for state in STATES if state not in ("standing", "jogging", "jog_ended", *EXTERNAL)),
         "the axis is in {state}, it must be in Standstill or jogging",
     ),
     **refused(
         23027,
-        (*MOVES, "jog"),
+        (*MOVES, *MODES, "jog"),
         EXTERNAL,
         "external setpoints are enabled; a PTP start is not permitted at the same time",
     ),
@@ -75,7 +97,7 @@ REFUSALS: Texts = {
     **refused(
         23014,
         REDIRECTIONS,
-        (*AT_REST, "external", "on_path", *IN_ERROR),
+        (*AT_REST, "external", "only_adding", "on_path", *IN_ERROR),
         "no positioning is active (the axis is in {state}); start one",
     ),
     **refused(23005, REDIRECTIONS, ("powered_off_in_motion",), "the enable was removed"),
@@ -99,10 +121,10 @@ REFUSALS: Texts = {
         ("compensating",),
         "a position compensation is active; it cannot be started again",
     ),
-    **refused(  # the jog leads to the limit, and the compensation would lead beyond
+    **refused(  # the motion leads to the limit, and the compensation would lead beyond
         120002,
         ("compensation_start",),
-        ("jogging",),
+        ("jogging", "velocity"),
         "target 100005.0 mm lies beyond the positive soft limit 100000.0 mm (P-AXIS-00178)",
     ),
     **refused(23028, ENABLES, ("disabled", "powered_off_in_motion"), "the axis is not enabled; power it on"),
@@ -117,7 +139,7 @@ REFUSALS: Texts = {
     **refused(
         23026,
         ENABLES[:1],
-        (*PTP_MOTION[:-1], *JOGGING),
+        (*PTP_MOTION[:-1], *JOGGING, "velocity", "only_adding"),
         "absolute setpoints are not permitted during a PTP motion; use relative",
     ),
     **refused(
@@ -150,6 +172,11 @@ WARNINGS: Texts = {
         "{command} without effect: no compensation is active",
     ),
     **warned(
+        ("halt_superimposed",),
+        tuple(state for state in STATES if state not in ADDING),
+        "{command} without effect: no superimposed motion is active",
+    ),
+    **warned(
         ("external_disable",),
         tuple(state for state in STATES if state not in EXTERNAL),
         "{command} without effect: external setpoints are not enabled",
@@ -168,12 +195,16 @@ def led_to(state: S, commands: tuple[str, ...], situations: tuple[str, ...]) -> 
 
 
 AFTER: dict[tuple[str, str], S] = {
-    **led_to(S.DISCRETE_MOTION, MOVES, ("standing",)),
+    **led_to(S.DISCRETE_MOTION, (*MOVES[:3], *MODES[:2], "move_superimposed"), ("standing",)),
+    **led_to(S.CONTINUOUS_MOTION, ("move_velocity", "move_velocity aborting"), ("standing",)),
+    **led_to(S.CONTINUOUS_MOTION, ("move_velocity aborting",), FREE),
+    **led_to(S.DISCRETE_MOTION, MODES[:2], ("jogging", "velocity")),
     **led_to(S.CONTINUOUS_MOTION, ENABLES, ("standing",)),
     **led_to(S.CONTINUOUS_MOTION, ("jog",), ("standing", "jog_ended")),
-    **led_to(S.DISCRETE_MOTION, ("jog 0", *REDIRECTIONS), ("jogging",)),
-    **led_to(S.STOPPING, ("stop", "reset", "power off"), JOGGING),
-    **led_to(S.STOPPING, ("halt", "emergency_stop"), ("jogging",)),
+    **led_to(S.DISCRETE_MOTION, ("jog 0", "halt", *REDIRECTIONS), ("jogging",)),
+    **led_to(S.DISCRETE_MOTION, ("halt", *REDIRECTIONS), ("velocity",)),
+    **led_to(S.STOPPING, ("stop", "reset", "power off"), (*JOGGING, "velocity", *ADDING)),
+    **led_to(S.STOPPING, ("emergency_stop",), ("jogging", "velocity", *ADDING)),
     **led_to(S.STANDSTILL, ("power on",), ("disabled",)),
     **led_to(S.STANDSTILL, ("reset",), ("error_stop",)),
     **led_to(S.STANDSTILL, (*STOPS, "reset"), ("held", "external")),

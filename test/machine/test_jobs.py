@@ -113,6 +113,67 @@ def test_a_gear_change_is_part_of_the_rotation_that_needs_it_and_a_waiting_job_i
     assert sorted(told(bench, "s")) == sorted([(1, ACTIVE), (1, ABORTED), (2, ABORTED), (3, ACTIVE), (3, DONE)])
 
 
+def test_a_reset_in_motion_aborts_the_job_of_an_axis_and_of_a_spindle() -> None:
+    """It stops them, and is no job."""
+    scenario = (
+        "- {at: 0, to: x, do: move_absolute, target: 200}\n- {at: 0, to: s, do: start, direction: cw, speed_rpm: 600}\n"
+        "- {at: 0.3, to: x, do: reset}\n- {at: 0.3, to: s, do: reset}"
+    )
+    bench = MachineBench(None, scenario).run()
+    for unit in ("x", "s"):
+        assert told(bench, unit) == [(1, ACTIVE), (1, ABORTED)]
+
+
+def test_power_off_aborts_the_job_immediately() -> None:
+    """Also if the enable is back before the axis is at a standstill."""
+    bench = axis_bench()
+    bench.accepted("move_absolute", target=1000.0)
+    bench.run(200)
+    bench.accepted("power", enabled=False)
+    bench.run(10)
+    bench.accepted("power", enabled=True)
+    bench.run(3000)
+    assert events(bench) == [JobEvent(1, ACTIVE, 0), JobEvent(1, ABORTED, 200)]
+
+
+def test_a_new_target_that_waits_for_the_end_of_a_stop_is_active_then() -> None:
+    bench = axis_bench()
+    bench.accepted("move_absolute", target=1000.0)
+    bench.run(200)
+    bench.accepted("stop")
+    bench.run(10)
+    bench.accepted("new_target", target=900.0)
+    bench.run(10)
+    bench.accepted("new_target", target=950.0)
+    bench.run(3000)
+    active = events(bench)[-2]
+    assert told(bench) == [
+        (1, ACTIVE), (1, ABORTED), (2, ACTIVE), (3, ABORTED), (2, DONE), (4, ACTIVE), (4, DONE)
+    ]  # fmt: skip
+    assert bench.column("set_velocity")[active.cycle] == 0.0 and bench.column("set_position")[-1] == 950.0
+
+
+def test_a_stop_drops_a_new_target_that_waits() -> None:
+    bench = axis_bench()
+    bench.accepted("move_absolute", target=1000.0)
+    bench.run(200)
+    bench.accepted("stop")
+    bench.accepted("new_target", target=900.0)
+    bench.accepted("stop")
+    bench.run(3000)
+    assert told(bench) == [
+        (1, ACTIVE), (1, ABORTED), (2, ACTIVE), (3, ABORTED), (2, ABORTED), (4, ACTIVE), (4, DONE)
+    ]  # fmt: skip
+
+
+def test_a_coupling_that_cannot_start_has_failed() -> None:
+    """A flying saw whose master is at a standstill."""
+    scenario = "- {at: 0, to: y, do: couple_flying_saw, master: x, factor: 1, master_position: 9, slave_position: 9}"
+    bench = MachineBench(None, scenario).run()
+    (failed,) = [event for block in bench.blocks["y"] for event in block.job_events if event.status != ACTIVE]
+    assert (failed.status, failed.error_id) == (FAILED, 23051)
+
+
 def test_a_program_that_is_resumed_is_the_same_job_and_a_reset_aborts_it() -> None:
     scenario = "- {at: 1, to: channel, do: start}\n- {at: 1.2, to: channel, do: reset}"
     bench = MachineBench("%P\nG01 X1 F3000\nM00\nG01 X100 F1000\nM30", scenario).run()

@@ -116,6 +116,23 @@ def external_beside(bench: UnitBench) -> None:
     bench.run(50)
 
 
+def velocity(bench: UnitBench) -> None:
+    """Endlessly at 500 mm/s, by a job that is no jog."""
+    bench.accepted("move_velocity", velocity=500.0)
+    bench.run(300)
+
+
+def adding(bench: UnitBench) -> None:
+    """A superimposed motion on top of a PTP motion."""
+    moving(bench)
+    only_adding(bench)
+
+
+def only_adding(bench: UnitBench) -> None:
+    bench.accepted("move_superimposed", distance=400.0, velocity_difference=100.0)
+    bench.run(50)
+
+
 def jogging(bench: UnitBench) -> None:
     """Endlessly at 500 mm/s."""
     bench.accepted("jog", velocity=500.0)
@@ -160,6 +177,9 @@ STATES: dict[str, tuple[Callable[[UnitBench], None], S]] = {
     "external_beside": (external_beside, S.DISCRETE_MOTION),
     "jogging": (jogging, S.CONTINUOUS_MOTION),
     "jog_ended": (jog_ended, S.DISCRETE_MOTION),
+    "velocity": (velocity, S.CONTINUOUS_MOTION),
+    "adding": (adding, S.DISCRETE_MOTION),
+    "only_adding": (only_adding, S.DISCRETE_MOTION),
     "on_path": (on_path, S.SYNCHRONIZED_MOTION),
     "error_ramp": (error_ramp, S.ERROR_STOP),
     "error_stop": (error_stop, S.ERROR_STOP),
@@ -172,6 +192,13 @@ COMMANDS: dict[str, tuple[str, dict[str, Any]]] = {
     "move_absolute": ("move_absolute", {"target": 100.0, **DYNAMICS}),
     "move_relative": ("move_relative", {"distance": 100.0, **DYNAMICS}),
     "move_modulo": ("move_modulo", {"position": 90.0, **DYNAMICS}),
+    "move_absolute aborting": ("move_absolute", {"target": 100.0, "buffer_mode": "aborting", **DYNAMICS}),
+    "move_absolute buffered": ("move_absolute", {"target": 100.0, "buffer_mode": "buffered", **DYNAMICS}),
+    "move_velocity": ("move_velocity", {"velocity": -300.0}),
+    "move_velocity aborting": ("move_velocity", {"velocity": -300.0, "buffer_mode": "aborting"}),
+    "move_superimposed": ("move_superimposed", {"distance": 5.0, "velocity_difference": 50.0}),
+    "halt_superimposed": ("halt_superimposed", {}),
+    "set_position": ("set_position", {"position": 1.0, "relative": True}),
     "set_override": ("set_override", {"percent": 60.0}),
     "set_override_type": ("set_override_type", {"type": 3}),
     "stop": ("stop", {}),

@@ -51,6 +51,19 @@ def compensating() -> UnitBench:
     return bench
 
 
+def adding() -> UnitBench:
+    bench = moving_axis()
+    bench.accepted("move_superimposed", distance=50.0, velocity_difference=20.0)
+    bench.run(10)
+    return bench
+
+
+def buffering() -> UnitBench:
+    bench = moving_axis()
+    bench.accepted("move_absolute", target=5.0, buffer_mode="buffered")
+    return bench
+
+
 def external(mode: str = "relative") -> UnitBench:
     bench = axis_bench()
     bench.accepted("external_enable", mode=mode)
@@ -112,7 +125,7 @@ CASES: list[tuple[int, Ask, str, dict[str, Any]]] = [
         22001,
         of_x("move_absolute", **MOVE, speed=5.0),
         "axis x: move_absolute refused: unknown argument 'speed'; nothing was changed. Known: target, velocity, "
-        "acceleration, deceleration, jerk",
+        "acceleration, deceleration, jerk, buffer_mode",
         {"argument": "speed"},
     ),
     (
@@ -366,6 +379,66 @@ CASES: list[tuple[int, Ask, str, dict[str, Any]]] = [
         of_x("compensation_start", {"virtual": True}, **COMPENSATION),
         "axis x: compensation_start refused: a virtual axis cannot compensate (P-AXIS-00020); nothing was changed",
         {},
+    ),
+    # superimposed and buffered motion
+    (
+        23059,
+        of_unit(adding, "move_superimposed", distance=1.0),
+        "axis x: move_superimposed refused: a superimposed motion is active; nothing was changed",
+        {},
+    ),
+    (
+        23004,
+        lambda: moving_axis(max_velocity=2100.0).give("move_superimposed", distance=1.0, velocity_difference=200.0),
+        "axis x: move_superimposed refused: the axis would get up to 2200 mm/s, above the maximum 2100.0 mm/s "
+        "(P-AXIS-00212); nothing was changed",
+        {"velocity": 2200.0, "limit": 2100.0},
+    ),
+    (
+        23058,
+        of_unit(half_released, "move_superimposed", distance=-1.0),
+        "axis x: move_superimposed refused: it leads backward, which is not released (set_feed_release); nothing was "
+        "changed",
+        {},
+    ),
+    (
+        23063,
+        of_unit(buffering, "move_absolute", **MOVE, buffer_mode="buffered"),
+        "axis x: move_absolute refused: job 2 waits already, no other can; nothing was changed",
+        {"job": 2},
+    ),
+    (
+        23005,
+        of_unit(stopping, "move_velocity", velocity=5.0, buffer_mode="aborting"),
+        "axis x: move_velocity refused: the axis is in Stopping, it must be in Standstill, DiscreteMotion or "
+        "ContinuousMotion; nothing was changed",
+        {"state": "Stopping"},
+    ),
+    (
+        23003,
+        of_x("move_velocity", velocity=0.0),
+        "axis x: move_velocity refused: velocity = 0 must be different from 0; halt the axis; nothing was changed",
+        {"argument": "velocity", "value": 0.0},
+    ),
+    (
+        22001,
+        of_x("move_absolute", **MOVE, buffer_mode="queued"),
+        "axis x: move_absolute refused: buffer_mode = 'queued' is not aborting or buffered or blending_low or "
+        "blending_previous or blending_next or blending_high; nothing was changed",
+        {"argument": "buffer_mode"},
+    ),
+    # other coordinates
+    (
+        23027,
+        of_unit(external, "set_position", position=1.0),
+        "axis x: set_position refused: external setpoints are enabled; disable them; nothing was changed",
+        {},
+    ),
+    (
+        23071,
+        lambda: slave().send("x", "set_position", position=1.0),
+        "axis x: set_position refused: the axis is the master of y; decouple first; nothing was changed",
+        {"slaves": "y"},
     ),
     # external setpoints
     (
