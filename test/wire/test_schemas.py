@@ -20,6 +20,9 @@ def test_text_holds_every_used_type_once():
         "MSG: cnc_ptp/ChannelOffsets",
         "MSG: cnc_ptp/CommandRequest",
         "MSG: cnc_ptp/HandshakeRequest",
+        "MSG: cnc_ptp/JobEvent",
+        "MSG: cnc_ptp/CommandAnswer",
+        "MSG: cnc_ptp/ControlUnitState",
         "MSG: builtin_interfaces/Time",
     ]
 
