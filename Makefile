@@ -66,6 +66,7 @@ $(VENV)/.docs: requirements-docs.txt $(VENV)/.requirements
 docs: setup $(VENV)/.docs
 	$(BIN)/python -m cnc_ptp.parameters.declare.reference > docs/parameters.md
 	$(BIN)/python -m cnc_ptp.commands.reference > docs/commands.md
+	$(BIN)/python -m cnc_ptp.commands.hli_reference > docs/hli_objects.md
 	$(BIN)/python -m cnc_ptp.commands.language.reference > docs/nc_language.md
 	$(BIN)/python -m cnc_ptp.commands.language.reference iso > docs/iso_language.md
 	$(BIN)/python -m cnc_ptp.commands.language.grammar > tools/nc.tmLanguage.json

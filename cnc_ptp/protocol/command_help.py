@@ -14,11 +14,13 @@ class ArgumentText(NamedTuple):
     left_out: str = ""
 
 
+OVERLAY = "an external PLC serves a control unit, or gives it back ([plc_hli.md](plc_hli.md))"
 COMMAND_TEXTS: Mapping[str, Mapping[str, str]] = {
     "axis": {
         "power": "enable",
         "reset": "leaves ErrorStop at a standstill; a stop in DiscreteMotion and ContinuousMotion",
         "set_feed_release": "feed release of each direction",
+        "feed_hold": "stops positioning and path on their ramps, and resumes them",
         "move_absolute": "positioning to a target",
         "move_relative": "positioning over a distance from the set position",
         "move_modulo": "positioning within a turn, modulo axes",
@@ -56,6 +58,7 @@ COMMAND_TEXTS: Mapping[str, Mapping[str, str]] = {
         "set_friction_compensation": "switches friction compensation",
         "read_drive_parameter": "reads a parameter of a SERCOS drive; the answer holds it",
         "write_drive_parameter": "writes a parameter of a SERCOS drive; S-0-0148 = 3 lets the drive home the axis",
+        "overlay": OVERLAY,
     },
     "spindle": {
         "power": "enable",
@@ -66,6 +69,7 @@ COMMAND_TEXTS: Mapping[str, Mapping[str, str]] = {
         "home": "G74: homing",
         "set_override": "override of speed and positioning",
         "suppress_override": "override without effect (G167)",
+        "feed_hold": "stops the spindle on its ramp, and lets it turn again",
         "select_gear": "M40 … M45: requests a gear change",
         "gear_changed": "the PLC has changed the gear",
         "set_limits": "limits of a tool",
@@ -76,6 +80,7 @@ COMMAND_TEXTS: Mapping[str, Mapping[str, str]] = {
         "set_feedforward": "switches and weights feedforward",
         "reset_feedforward": "feedforward off, weight 100 %",
         "reset": "leaves ErrorStop at a standstill",
+        "overlay": OVERLAY,
     },
     "channel": {
         "load": "reads and checks an NC program",
@@ -92,16 +97,21 @@ COMMAND_TEXTS: Mapping[str, Mapping[str, str]] = {
         "set_zero_offset": "a value of a zero offset; it counts when the offset is selected next",
         "teach_zero_offset": "the present position becomes a zero offset",
         "set_clamp_position": "clamp position of the next program",
+        "overlay": OVERLAY,
     },
     "plc": {
         "acknowledge": "acknowledges a handshake request of any channel",
         "auto_acknowledge": "whether requests are acknowledged with the next cycle block",
         "set_life_sign": "life sign of the PLC; without it all units stop",
         "set_input": "a value from outside for a [PLC in a file](plc.md#inputs)",
+        "serve": "an external PLC answers the functions of a channel, or the gear changes of a spindle",
+        "emergency_stop": "everything stops at once and is locked until this is off and each unit was reset",
+        "reset": "resets each unit that is in error",
         "stop_all": "stops everything on its ramp",
     },
 }
 
+VALUE = ArgumentText("", "switches 0 and 1, overrides in %; 1 has an edge carried out", "with `enabled` off only")
 ARGUMENT_TEXTS: Mapping[str, ArgumentText] = {
     "index": ArgumentText("", "of the zero offset: 1 is G54, up to 96"),
     "axis": ArgumentText("", "its name in programs"),
@@ -170,10 +180,14 @@ ARGUMENT_TEXTS: Mapping[str, ArgumentText] = {
     "name": ArgumentText("", "of the input"),
     "parameter": ArgumentText("", "P-AXIS-00236 or P-MACH-00014"),
     "idn": ArgumentText("", "`S-0-` and four digits"),
+    "control_unit": ArgumentText("", "of the unit ([hli_objects.md](hli_objects.md))"),
+    "holder": ArgumentText("", "name of the PLC", "none"),
+    "unit": ArgumentText("", "a channel or a spindle"),
 }
 """By name; those that differ for single commands follow below."""
 
 SPECIAL_TEXTS: Mapping[tuple[str, str, str], ArgumentText] = {
+    **{(kind, "overlay", "value"): VALUE for kind in ("axis", "spindle", "channel")},
     ("axis", "new_velocity_and_target", "velocity"): ArgumentText("mm/s, °/s", "from the activation position on"),
     ("axis", "home", "position"): ArgumentText("mm, °", "position of the reference point", "P-AXIS-00152"),
     ("axis", "write_drive_parameter", "value"): ArgumentText("", "in digits of the drive"),

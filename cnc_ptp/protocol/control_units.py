@@ -2,7 +2,7 @@
 
 The one place that says which there are, which values they have, whether they act by level or by edge, and which command
 of a unit they stand for. Units carry them out (protocol/overlay.py), plc/hli checks messages against it, the reference
-docs/plc_hli.md is made from it. Source: TF5200 spindle 2.4, 2.9; TX1250 2.1, 2.2; public HLI documentation.
+docs/hli_objects.md is made from it. Source: TF5200 spindle 2.4, 2.9; TX1250 2.1, 2.2; public HLI documentation.
 """
 
 from __future__ import annotations

@@ -98,7 +98,8 @@ def test_layout_of_a_block_gives_the_bytes_of_encode(count, first, values):
     of_the_block |= {"couples_actual": True, "job": 7}
     probe = {"probe_on": True, "probe_switched": True, "probe_cycle": 3.25, "probe_position": -12.5}
     of_the_block |= probe
-    block = {"header": Header(), "first_cycle": first, "count": count, **of_the_block, "job_events": [], "answers": []}
+    block = {"header": Header(), "first_cycle": first, "count": count, **of_the_block}
+    block |= {"job_events": [], "answers": [], "control_units": []}
     block |= {name: [value] * count for name, value in zip(names, [*values, 3, 4, 5], strict=True)}
     row = Layout(schema, block | dict.fromkeys(names, [0] * count)).empty(1)
     row["first_cycle"] = first

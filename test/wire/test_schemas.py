@@ -22,6 +22,7 @@ def test_text_holds_every_used_type_once():
         "MSG: cnc_ptp/HandshakeRequest",
         "MSG: cnc_ptp/JobEvent",
         "MSG: cnc_ptp/CommandAnswer",
+        "MSG: cnc_ptp/ControlUnitState",
         "MSG: builtin_interfaces/Time",
     ]
 

@@ -1,0 +1,248 @@
+"""The HLI in a graph: what PLCs write and see, arbitration, functions, emergency stop, messages at 1 kHz.
+
+All tests share one run; its recording, which no script has played, is verified to the bit at the end.
+"""
+
+import signal
+import time
+
+import pytest
+import rclpy
+from client_support import Client
+from graph_support import Running, small_machine, verified
+from std_msgs.msg import Bool, Header
+from std_srvs.srv import Trigger
+
+from cnc_ptp import msg
+from cnc_ptp.nodes import process
+from cnc_ptp.nodes.topics import HLI_CONTROL, HLI_STATUS, LATEST, PLC_INPUT
+from cnc_ptp.parameters import read_machine
+from cnc_ptp.protocol.axis_states import AxisStateCode
+
+UNHEARD_DURATION = 300
+
+
+class PlcClient(Client):
+    """A client that is a PLC: `say` writes a control message, `status` has the newest one of each unit."""
+
+    def __init__(self, machine):
+        super().__init__(machine)
+        self.status = {}
+        for unit, kind in self.kinds.items():
+            if kind in HLI_STATUS:
+                self.status[unit] = []
+                topic = f"/{unit}/hli/status"
+                self.create_subscription(HLI_STATUS[kind], topic, self.status[unit].append, PLC_INPUT)
+
+    def say(self, unit, plc="p1", *, wait=True, valid=True, **fields):
+        of, topic = HLI_CONTROL[self.kinds[unit]], f"/{unit}/hli/control"
+        message = of(header=Header(frame_id=plc), valid=valid, **fields)
+        if topic not in self._writers:
+            writer = self._writers[topic] = self.create_publisher(of, topic, PLC_INPUT)
+            self.spin_until(lambda: writer.get_subscription_count() >= 2, f"readers of {topic}")
+        self._writers[topic].publish(message)
+        if wait:
+            self.wait_blocks("plc", 4)
+
+    def sees(self, unit, condition, what):
+        """Waits for a status that fulfils a condition; returns it."""
+        self.spin_until(lambda: self.status[unit] and condition(self.status[unit][-1]), f"{unit}: {what}")
+        return self.status[unit][-1]
+
+    def told(self, error_id):
+        return [event.text for event in self.events if event.error_id == error_id]
+
+
+def served(value=True):
+    of = msg.HliSwitch if isinstance(value, bool) else msg.HliNumber
+    return of(enable_w=True, command_w=value)
+
+
+@pytest.fixture(scope="module")
+def machine(tmp_path_factory):
+    return small_machine(tmp_path_factory.mktemp("machine"))
+
+
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory):
+    return tmp_path_factory.mktemp("hli") / "run.mcap"
+
+
+@pytest.fixture(scope="module")
+def graph(ros_domain, machine, recording):
+    graph = Running(machine, "--duration", UNHEARD_DURATION, "--record", recording)
+    graph.wait_for_nodes(7)
+    yield graph
+    graph.end()
+
+
+@pytest.fixture(scope="module")
+def plc(graph, machine):
+    process.initialise()
+    client = PlcClient(read_machine(str(machine)))
+    client.start()
+    client.wait_blocks("x", 1)
+    yield client
+    client.destroy_node()
+    client.executor_of_test.shutdown()
+    rclpy.try_shutdown()
+
+
+def test_the_status_counts_blocks_and_shows_both_units(plc):
+    status = plc.sees("x", lambda status: status.valid and not status.held, "a status")
+    assert status.override.state_r == 100.0 and status.override.state_hli == 1000
+    assert status.controller_enable.state_r and status.feed_enable_forward.state_r and not status.emergency_stop.state_r
+    begin = len(plc.status["x"])
+    plc.spin_until(lambda: len(plc.status["x"]) >= begin + 20, "20 more")
+    signs = [status.life_sign for status in plc.status["x"][begin:]]
+    cycles = [status.cycle for status in plc.status["x"][begin:]]
+    assert [sign - signs[0] for sign in signs] == [(cycle - cycles[0]) // 10 for cycle in cycles]  # once per block
+    assert signs == sorted(set(signs)) and signs[-1] - signs[0] < 30
+
+
+def test_the_plc_takes_an_override_over_and_gives_it_back(plc):
+    plc.say("x", override=served(40.0))
+    plc.shows("x", "override_percent", 40.0)
+    answer = plc.call("x", "set_override", percent=80.0)
+    text = (
+        "P-WARN-26160 axis x: set_override waits: the PLC 'p1' serves override and commands 40; what is asked for acts "
+        "when it gives override back"
+    )
+    assert (answer.accepted, answer.message) == (True, text)
+    plc.sees(
+        "x", lambda s: (s.override.enable_r, s.override.request_r, s.override.state_r) == (True, 80.0, 40.0), "both"
+    )
+    assert plc.blocks["x"][-1].override_percent[-1] == 40.0
+    plc.say("x", valid=False)
+    plc.shows("x", "override_percent", 80.0)
+    plc.say("x", units=msg.AxisHliControl.HLI, override=served(555.0))
+    plc.shows("x", "override_percent", 55.5)
+    plc.say("x", valid=False)
+
+
+def test_a_second_plc_and_a_bad_value(plc):
+    plc.say("y", "p1", override=served(40.0), wait=False)
+    plc.say("y", "p2", override=served(90.0), wait=False)
+    plc.say("y", "p1", override=served(float("nan")), feed_hold=served(True))
+    plc.sees("y", lambda status: status.held and status.holder == "p1" and status.feed_hold.state_r, "the feed hold")
+    assert plc.blocks["y"][-1].override_percent[-1] == 40.0
+    assert plc.told(26162) == [
+        "plc: HLI of y: 'p2' commands it too and is refused while 'p1' holds it; nothing was changed"
+    ]
+    assert plc.told(26164) == ["plc: HLI of y: override: command nan is not within 0 ... 100; 40 holds"]
+    plc.sees("y", lambda status: not status.held, "the silence of p1")
+    silent = "plc: HLI of y: no message of 'p1' for "
+    plc.spin_until(lambda: any(text.startswith(silent) for text in plc.told(26165)), "the event")
+    plc.say("y", "p2", override=served(90.0))
+    plc.sees("y", lambda status: status.holder == "p2" and not status.feed_hold.state_r, "p2")
+    plc.say("y", "p2", valid=False)
+
+
+def test_an_edge_and_an_external_command(plc):
+    command = msg.HliAxisCommand(semaphore=True, type=msg.HliAxisCommand.MOVE_ABSOLUTE, position=3.0)
+    plc.say("x", reset=served(False), external=command)
+    status = plc.sees(
+        "x", lambda status: status.external.count_r == 1 and not status.external.command_semaphore, "taken"
+    )
+    assert status.external.error_id == 0 and status.external.job > 0 and status.reset.enable_r
+    refused = plc.refused(
+        "x", "reset", 26161,
+        "axis x: reset refused: the PLC 'p1' serves reset; it is shown what was asked for; nothing was changed",
+    )  # fmt: skip
+    assert not refused.accepted
+    plc.sees("x", lambda status: status.reset.request_r, "the request")
+    plc.say("x", reset=served(True))
+    plc.sees("x", lambda status: status.reset.count_r == 1 and not status.reset.request_r, "the reset")
+    plc.sees("x", lambda status: not status.moving, "the end of the motion")
+    plc.say("x", valid=False)
+
+
+def test_functions_wait_for_the_plc(plc, tmp_path):
+    path = tmp_path / "job.nc"
+    path.write_text("%job\nN10 M08\nN20 G01 X10 F3000\nM30\n")
+    plc.say("channel", acknowledge=msg.HliAcknowledgement(enable_w=True))
+    plc.done("channel", "load", program=str(path))
+    plc.done("channel", "start")
+    request = plc.sees("channel", lambda status: len(status.requests) == 1, "a request").requests[0]
+    assert (request.kind, request.number) == ("M", 8)
+    done = msg.HliAcknowledgement(enable_w=True, done_w=[request.id, 0, 0, 0, 0, 0, 0, 0])
+    plc.say("channel", acknowledge=done)
+    plc.sees("channel", lambda status: status.requests == [] and status.done, "the end of the program")
+    assert plc.blocks["x"][-1].set_position[-1] == pytest.approx(10.0)
+    plc.say("channel", acknowledge=msg.HliAcknowledgement(enable_w=True))
+    plc.say("channel", acknowledge=done)
+    text = f"plc plc: acknowledge refused: no request {request.id} waits; nothing was changed. Waiting: none"
+    plc.spin_until(lambda: text in plc.told(22013), "the refusal")
+    plc.say("channel", valid=False)
+
+
+def test_the_life_sign_of_the_plc_holds_what_it_serves(plc):
+    plc.say("channel", feed_hold=served(False))
+    plc.write("/plc/life_sign", msg.LifeSign, counter=1)
+    plc.sees("channel", lambda status: status.feed_hold.state_r, "the feed hold")
+    assert any("feed hold is set on all channels" in text for text in plc.told(26103))
+    plc.say("channel", feed_hold=served(False))
+    plc.sees("channel", lambda status: not status.feed_hold.state_r, "its end")
+    plc.done("channel", "feed_hold", enabled=False)
+    plc.say("channel", valid=False)
+
+
+def test_four_topics_at_1_khz_make_one_command_a_block_and_the_newest_value_wins(plc):
+    """Of the HLI and with single values; that no block is lost, the recording shows (the last test)."""
+    units = ("x", "y")
+    last = 50.0 + (999 * 7) % 41
+    first = plc.blocks["plc"][-1].first_cycle
+    before = [len(plc.commands(unit, name)) for name in ("overlay", "set_override") for unit in units]
+    for unit in units:
+        plc.say(unit, override=served(50.0), wait=False)
+        plc.write(f"/{unit}/override", msg.Override, readers=2, valid=True, percent=50.0)
+    begin = time.monotonic()
+    for number in range(1000):
+        percent = 50.0 + (number * 7) % 41
+        for unit in units:
+            plc.say(unit, override=served(percent), wait=False)
+            plc._writers[f"/{unit}/override"].publish(msg.Override(valid=True, percent=percent))
+        plc.executor_of_test.spin_once(timeout_sec=max(0.0, begin + (number + 1) * 0.001 - time.monotonic()))
+    for unit in units:
+        plc.sees(unit, lambda status: status.override.state_r == last, "the last value")
+        plc.sees(unit, lambda status: status.override.request_r == last, "the last value of the topic")
+    plc.wait_blocks("plc", 20)
+    blocks = (plc.blocks["plc"][-1].first_cycle - first) // 10
+    after = [len(plc.commands(unit, name)) for name in ("overlay", "set_override") for unit in units]
+    assert all(10 < now - then <= blocks for now, then in zip(after, before, strict=True))
+    assert plc.told(26102) == []
+    for unit in units:
+        plc.say(unit, valid=False)
+
+
+def test_the_emergency_stop(plc):
+    shown = []
+    plc.create_subscription(Bool, "/emergency_stop/active", lambda message: shown.append(message.data), LATEST)
+    plc.done("y", "move_absolute", target=200.0, velocity=20.0)
+    plc.write("/emergency_stop", Bool, data=True)
+    for unit in ("x", "y", "s"):
+        plc.shows(unit, "state", AxisStateCode.ERROR_STOP)
+        plc.sees(unit, lambda status: status.emergency_stop.state_r and status.error_id == 26168, "the emergency stop")
+    plc.wait_last("y", lambda block: block.set_velocity[-1] == 0.0, "standstill")
+    plc.spin_until(lambda: shown and shown[-1], "the lamp")
+    holds = "refused: the emergency stop holds; release it first; nothing was changed"
+    plc.refused("y", "reset", 26169, f"axis y: reset {holds}")
+    answer = plc.ask(Trigger, "/emergency_stop/reset")
+    assert (answer.success, answer.message) == (False, f"plc plc: reset {holds}")
+    plc.write("/emergency_stop", Bool, data=False)
+    plc.spin_until(lambda: not shown[-1], "the lamp off")
+    assert plc.blocks["y"][-1].state[-1] == AxisStateCode.ERROR_STOP
+    assert plc.ask(Trigger, "/emergency_stop/reset").success
+    for unit in ("x", "y", "s"):
+        plc.shows(unit, "state", AxisStateCode.STANDSTILL)
+    assert plc.ask(Trigger, "/emergency_stop/press").success and plc.ask(Trigger, "/emergency_stop/release").success
+    assert plc.ask(Trigger, "/emergency_stop/reset").success
+    plc.sees("channel", lambda status: status.error_id == 0, "the channel")
+
+
+def test_the_recording_is_computed_again(graph, plc, recording):
+    plc.wait_blocks("plc", 10)
+    graph.process.send_signal(signal.SIGINT)
+    graph.finish(expect=1)
+    recorded = verified(recording)
+    assert sum(record.command == "overlay" for record in recorded.commands) > 20
