@@ -39,7 +39,15 @@ def test_commands_without_a_service():
         for name in set(commands) - INTERNAL - set(SERVICES[kind])
         if kind != "axis" or name not in COUPLING_SERVICES
     }
-    assert without == {"reset_feedforward", "external_setpoints", "acknowledge", "jog", "overlay", "serve", "write_parameter"}
+    assert without == {
+        "reset_feedforward",
+        "external_setpoints",
+        "acknowledge",
+        "jog",
+        "overlay",
+        "serve",
+        "write_parameter",
+    }
     assert {name for name in re.findall(r"`(\w+)`", text) if name in without} == without
 
 
