@@ -36,5 +36,5 @@ def error_of(number: int, text: str, values: Mapping[str, Value]) -> CncError:
 
 
 def fault_of(event: Event) -> CncError:
-    """The error that an event tells of."""
+    """The error of an event."""
     return error_of(event.error_id, event.text, {value.name: value.value for value in event.values})

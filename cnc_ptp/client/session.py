@@ -1,4 +1,4 @@
-"""A client at work: gives commands, waits, passes on what comes; the same for an offline machine and the graph."""
+"""Gives commands, waits, passes on what comes: the same for an offline machine and the graph."""
 
 from __future__ import annotations
 
