@@ -8,13 +8,13 @@ from cnc_ptp.errors import CncError, Value, nearest_name
 from cnc_ptp.machine.wiring import UNKNOWN_UNIT
 from cnc_ptp.protocol.blocks import Event
 
-TIMEOUT = 26160
-GONE = 26161
-CLOSED = 26162
-ABORTED = 26163
-NOTHING_MOVES = 26164
-UNSEEN = 26165
-NOT_STARTED = 26166
+TIMEOUT = 26170
+GONE = 26171
+CLOSED = 26172
+ABORTED = 26173
+NOTHING_MOVES = 26174
+UNSEEN = 26175
+NOT_STARTED = 26176
 IT_CONTINUES = "it continues"
 
 
@@ -36,5 +36,5 @@ def error_of(number: int, text: str, values: Mapping[str, Value]) -> CncError:
 
 
 def fault_of(event: Event) -> CncError:
-    """The error that an event tells of."""
+    """The error of an event."""
     return error_of(event.error_id, event.text, {value.name: value.value for value in event.values})

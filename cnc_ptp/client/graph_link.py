@@ -85,7 +85,7 @@ class GraphLink(Link):
         client.poll(msg.CommandRecord, COMMAND, self._take_record, FROM_NOW_ON)
 
     def wait_until_complete(self, timeout: float) -> None:
-        """Every unit has told of itself. Raises CncError 26166."""
+        """Every unit has told of itself. Raises CncError 26176."""
         deadline = time.monotonic() + timeout
         while not self.seen.cycle:
             if time.monotonic() > deadline:

@@ -77,8 +77,8 @@ class Job:
         """Waits until it is done; an endless one (rotation, jog, coupling) until it has `reached` what was commanded.
 
         `timeout` in s: of machine time offline, of this computer's time in the graph. Raises the error of a unit that
-        has failed, and CncError 26160 (timeout), 26161 (the machine is gone), 26162 (closed), 26163 (aborted), 26164
-        (offline: nothing moves), 26165 (its end was not seen).
+        has failed, and CncError 26170 (timeout), 26171 (the machine is gone), 26172 (closed), 26173 (aborted), 26174
+        (offline: nothing moves), 26175 (its end was not seen).
         """
         self._session.run(self._to_the_end(timeout))
         return self

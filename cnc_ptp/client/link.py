@@ -58,7 +58,7 @@ class Link(ABC):
 
     @abstractmethod
     def turn(self, timeout: float) -> None:
-        """Lets something come, at most for `timeout` seconds of the clock. Raises CncError 26161."""
+        """Lets something come, at most for `timeout` seconds of the clock. Raises CncError 26171."""
 
     @abstractmethod
     async def turn_async(self, timeout: float) -> None:

@@ -67,7 +67,7 @@ class Machine:
         """Starts the ROS graph of a machine, as `cnc_ptp run --stay` does; it ends on its ramps with this program.
 
         `record`: an MCAP file; `scenario`: timed commands; `composed`: all nodes in one process; `domain`: None =
-        ROS_DOMAIN_ID; `namespace`: of all nodes; `timeout` in s until it runs. Raises ParameterError, CncError 26166
+        ROS_DOMAIN_ID; `namespace`: of all nodes; `timeout` in s until it runs. Raises ParameterError, CncError 26176
         (not started) and what `cnc_ptp run` refuses: 26107 (the domain is taken), 26108, 26110, 26113, 26117, 26141 …
         """
         from cnc_ptp.client.graph_link import start_graph

@@ -1,4 +1,4 @@
-"""A client at work: gives commands, waits, passes on what comes; the same for an offline machine and the graph."""
+"""Gives commands, waits, passes on what comes: the same for an offline machine and the graph."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Session:
     # commands
 
     def ask(self, unit: str, command: str, arguments: dict[str, Any]) -> Reply:
-        """Gives a command and waits for its answer. Raises the unit's refusal, and CncError 26161, 26162."""
+        """Gives a command and waits for its answer. Raises the unit's refusal, and CncError 26171, 26172."""
         self.require_open(f"{self.link.kinds[unit]} {unit}: {command}")
         ticket = self.link.give(unit, command, arguments)
         while (reply := self.link.answer(ticket)) is None:
@@ -60,7 +60,7 @@ class Session:
     ) -> Turns:
         """Ends when the condition has come true.
 
-        Raises CncError 26160 after `timeout` seconds; without one 26164 where it would wait for ever, unless that
+        Raises CncError 26170 after `timeout` seconds; without one 26174 where it would wait for ever, unless that
         `may_stall`.
         """
         begin = self.link.now

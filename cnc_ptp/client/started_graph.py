@@ -51,7 +51,7 @@ class StartedGraph:
         """What went wrong with its processes, after its end."""
 
     def wait_until_running(self, timeout: float) -> None:
-        """Raises CncError 26166, or that of the start."""
+        """Raises CncError 26176, or that of the start."""
         deadline = time.monotonic() + timeout
         while not self.is_running:
             self._read(deadline - time.monotonic())

@@ -47,5 +47,5 @@ class Stream(Generic[Item, Shown]):
                 yield each
 
     def _is_due(self) -> bool:
-        """Something is there, or the time is over."""
+        """Something has come, or the end of the time."""
         return bool(self._mailbox.items) or (self._end is not None and self._session.time >= self._end)

@@ -142,7 +142,7 @@ def test_an_unknown_unit_is_what_python_expects(ptp: Machine) -> None:
 def test_a_wait_has_a_timeout_of_machine_time(m: Machine) -> None:
     job = m.x.move_absolute(100, velocity=10)
     number, text, _ = refusal(lambda: job.wait(0.5))
-    assert (number, text) == (26160, "axis x: move_absolute is not done after 0.5 s of machine time; it continues")
+    assert (number, text) == (26170, "axis x: move_absolute is not done after 0.5 s of machine time; it continues")
     assert m.cycle == 510 and job.status is JobStatus.ACTIVE
     job.wait()
 
@@ -152,7 +152,7 @@ def test_a_job_that_another_one_replaces_is_aborted(m: Machine) -> None:
     m.run_for(0.1)
     new = m.x.new_target(50)
     assert refusal(job.wait)[:2] == (
-        26163,
+        26173,
         "axis x: move_absolute was aborted at cycle 110; another command, or a loss of power, has ended it",
     )
     assert new.wait() is new and m.x.state.set_position == 50.0
@@ -169,7 +169,7 @@ def test_a_wait_without_a_timeout_ends_where_nothing_will_move(m: Machine) -> No
     m.x.set_override(0)
     job = m.x.move_absolute(100)
     assert refusal(job.wait)[:2] == (
-        26164,
+        26174,
         "axis x: move_absolute is not done: nothing has moved for 10 s of machine time, and nothing will; it continues",
     )
     m.x.set_override(100)
@@ -237,7 +237,7 @@ def test_events_come_as_they_happen(m: Machine) -> None:
 
 def test_an_iterator_without_an_end_ends_where_nothing_will_come(m: Machine) -> None:
     assert refusal(lambda: [*m.events()])[:2] == (
-        26164,
+        26174,
         "no new event: nothing has moved for 10 s of machine time, and nothing will; it continues",
     )
 
@@ -280,10 +280,10 @@ def test_the_end_stops_everything_on_its_ramps(tmp_path: Path) -> None:
 def test_nothing_works_after_the_end() -> None:
     with Machine.offline(MILL) as m:
         job = m.x.move_absolute(10)
-    assert refusal(job.wait)[0] == 26163
+    assert refusal(job.wait)[0] == 26173
     for call in (m.x.halt, lambda: m.run_for(1.0), lambda: [*m.events(1.0)]):
-        assert refusal(call)[0] == 26162
-    assert refusal(m.x.halt)[1] == "axis x: halt: the machine was closed; nothing was sent"
+        assert refusal(call)[0] == 26172
+    assert refusal(m.x.halt)[:2] == (26172, "axis x: halt: the machine was closed; nothing was sent")
     m.close()
     assert repr(m).endswith("closed>")
 
@@ -291,7 +291,7 @@ def test_nothing_works_after_the_end() -> None:
 def test_a_run_that_the_plc_has_ended_is_over(m: Machine) -> None:
     m.x.move_absolute(100)
     m.plc.stop_all()
-    assert refusal(lambda: m.run_for(10.0))[:2] == (26161, "the machine has ended: its run has ended; its units stand")
+    assert refusal(lambda: m.run_for(10.0))[:2] == (26171, "the machine has ended: its run has ended; its units stand")
     assert refusal(m.x.halt)[:2] == (26115, "axis x: halt refused: the run has ended; nothing was changed")
 
 
@@ -315,7 +315,7 @@ def test_several_wait_in_an_event_loop(m: Machine) -> None:
         await m.run_for_async(0.1)
         await m.wait_until_async(lambda: m.y.state.set_position > 25.0, timeout=10.0)
         results = await moves
-        with pytest.raises(CncError, match="26160"):
+        with pytest.raises(CncError, match="26170"):
             await m.x.move_absolute(50).wait_async(0.05)
         return results, states
 

@@ -50,6 +50,7 @@ REFUSED = {
     ("channel", "teach_zero_offset"): "index = 0 is not within 1 ... 96; G53 selects no offset (P-ZERO-00001)",
     ("channel", "set_clamp_position"): "index = 4294967295 is not within 0 ... 149",
     ("plc", "set_input"): "argument 'value' is missing",
+    ("channel", "acknowledge"): "no request 0 waits (waiting: none)",
     ("channel", "measuring_event"): "nothing in the running block waits for one",
 }
 """Reasons, in a unit at a standstill."""
@@ -60,11 +61,11 @@ WHOLE_TEXT = {
 MEANT = {
     "axis": {
         "power", "reset", "set_override", "stop", "halt", "home", "emergency_stop", "compensation_stop",
-        "external_disable", "set_feedforward", "set_friction_compensation", "set_feed_release",
+        "external_disable", "set_feedforward", "reset_feedforward", "set_friction_compensation", "set_feed_release",
     },
     "spindle": {
         "power", "stop", "home", "set_override", "suppress_override", "reset_limits", "stop_at_program_end", "reset",
-        "set_feedforward",
+        "set_feedforward", "reset_feedforward",
     },
     "channel": {"feed_hold", "set_override", "single_block", "optional_stop", "block_skip", "reset"},
     "plc": {"auto_acknowledge", "set_life_sign", "stop_all"},

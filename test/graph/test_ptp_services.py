@@ -7,7 +7,7 @@ from client_support import beside_composed_run
 from graph_support import PTP
 
 from cnc_ptp import msg
-from cnc_ptp.nodes.topics import COUPLING_SERVICES, SERVICES
+from cnc_ptp.nodes.topics import COUPLING_SERVICES, SERIES_SERVICES, SERVICES
 from cnc_ptp.protocol.axis_states import AxisStateCode
 from cnc_ptp.protocol.commands import COMMANDS, OF_CHANNELS
 
@@ -21,15 +21,23 @@ COMPENSATING, EXTERNAL, HAS_JOB, STOPPED, IN_TARGET = 1 << 13, 1 << 14, 1 << 8, 
 def test_fields_of_services_are_the_arguments_of_commands(kind):
     for command, service in SERVICES[kind].items():
         fields = {name for name in service.Request.get_fields_and_field_types() if not name.startswith("has_")}
-        known = COMMANDS[kind][command].keys() - OF_CHANNELS - {"text", "files", "setpoints", "resume"}
-        assert fields == known or (command == "mdi" and fields == {"text"}), command
+        known = COMMANDS[kind][command].keys() - OF_CHANNELS - {"files"}
+        assert fields - {"file_names", "file_texts"} == known, command
+        assert ("file_names" in fields) == ("files" in COMMANDS[kind][command]), command
 
 
 def test_fields_of_coupling_services():
     filled_in = {"above", "master_stands", "master_lost", "table"}
     for command, service in COUPLING_SERVICES.items():
         fields = service.Request.get_fields_and_field_types()
-        assert set(fields) == COMMANDS["axis"][command].keys() - filled_in, command
+        points = {"master_points", "slave_points"} if "table" in COMMANDS["axis"][command] else set()
+        assert set(fields) - points == COMMANDS["axis"][command].keys() - filled_in, command
+        assert points <= set(fields), command
+
+
+def test_every_answer_has_the_values_of_a_refusal():
+    services = [s for group in (*SERVICES.values(), COUPLING_SERVICES, SERIES_SERVICES) for s in group.values()]
+    assert all("values_json" in service.Response.get_fields_and_field_types() for service in services)
 
 
 @pytest.fixture(scope="module")

@@ -68,7 +68,7 @@ def story(m: Machine, folder: Path) -> list[object]:
 
 
 EXPECTED = [
-    100.0, JobStatus.ABORTED, 26163, 0.0,
+    100.0, JobStatus.ABORTED, 26173, 0.0,
     JobStatus.ACTIVE, True, 600.0,
     [("M", 8, 5), ("M", 9, 7)], True, 1.0, 50.0, 15.0,
     45.0, 0.0,

@@ -23,7 +23,7 @@ from cnc_ptp.nodes.client.latest_blocks import LatestBlocks
 from cnc_ptp.nodes.client.requests import check_integers, request_of
 from cnc_ptp.nodes.polling_node import PollingNode
 from cnc_ptp.nodes.topics import COUPLING_SERVICES, SERIES_SERVICES, SERVICES
-from cnc_ptp.protocol.commands import COMMANDS, INTERNAL, UNKNOWN_COMMAND, Arguments
+from cnc_ptp.protocol.commands import COMMANDS, UNKNOWN_COMMAND, Arguments
 from cnc_ptp.protocol.unit import PLC
 
 NO_MACHINE = 26135
@@ -67,7 +67,7 @@ class MachineClient(PollingNode):
         return True
 
     def end(self) -> None:
-        """No message is delivered any more, and the node is gone."""
+        """The end of the node; no message is delivered after it."""
         self._executor_of_client.shutdown()
         self.destroy_node()
 
@@ -169,10 +169,7 @@ def arguments_of(kind: str, unit: str, command: str) -> Arguments:
         known = sorted(services_of(kind))
         if command == "jog" and kind == "axis":
             raise CncError(UNKNOWN_COMMAND, f"jog has no service, use: cnc_ptp jog {unit} + --speed ...", where=where)
-        if command in COMMANDS[kind].keys() - INTERNAL:
-            text = f"'{command}' is a command of scenarios only"
-        else:
-            text = f"unknown command '{command}'{nearest_name(command, known)}"
+        text = f"unknown command '{command}'{nearest_name(command, known)}"
         raise CncError(UNKNOWN_COMMAND, text, f"nothing was sent. Known: {', '.join(known)}", where=where)
     fields = service.Request.get_fields_and_field_types()
     known = COMMANDS[kind][command].items()
