@@ -201,7 +201,7 @@ class Units(dict[str, Kind]):
     """The units of one kind by name; a name that is not there has its own error."""
 
     def __init__(self, units: Mapping[str, Kind], what: str) -> None:
-        super().__init__(units)
+        super().__init__(list(units.items()))
         self._what = what
 
     def __missing__(self, name: str) -> Kind:
