@@ -201,7 +201,8 @@ class Units(dict[str, Kind]):
     """The units of one kind by name; a name that is not there has its own error."""
 
     def __init__(self, units: Mapping[str, Kind], what: str) -> None:
-        super().__init__(list(units.items()))
+        super().__init__()
+        self.update(units)
         self._what = what
 
     def __missing__(self, name: str) -> Kind:
