@@ -11,7 +11,7 @@ from figures.run import Column, FigureRun
 
 ROW, UP, NAME = 20.0, 0.4, 0.68
 """Points of a row; part of it that a signal takes; height of its name above it."""
-TITLE = "function blocks"
+TITLE = "PLC"
 
 
 def height(run: FigureRun) -> float:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 from cnc_ptp.plots.colours import BLUE, GREEN, PURPLE, RED, TEAL, YELLOW, Pair
 from cnc_ptp.protocol.blocks import AxisBlock, SpindleBlock
+from cnc_ptp.recording.blocks import kind_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,13 +38,9 @@ class UnitKind:
     usual: tuple[str, ...]
 
 
-LISTS = ("commands", "refused", "job_events", "answers")
-"""Lists of a block that do not have one entry per cycle."""
-
-
 def columns(block: type[AxisBlock | SpindleBlock]) -> tuple[str, ...]:
-    """Fields of a block with one number per cycle; the others are of the block as a whole."""
-    return tuple(field.name for field in fields(block) if field.default_factory is list and field.name not in LISTS)
+    """Fields of a block with one number per cycle: those of the states; the others are of the block as a whole."""
+    return tuple(kind_of(block).columns)
 
 
 AXIS = {

@@ -23,17 +23,16 @@ from cnc_ptp.plc.plcopen import (
 )
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 
+Plan = Callable[[int], dict[str, dict[str, Any]]]
 DYNAMICS = {"velocity": 1000.0, "acceleration": 5000.0, "deceleration": 5000.0, "jerk": 50000.0}
 
 
 class Blocks:
     """A PLC of one axis with blocks by name; `plan(n)` gives the inputs of each in the n-th PLC cycle."""
 
-    def __init__(
-        self, io: Any, blocks: dict[str, type], plan: Callable[[int], dict[str, dict[str, Any]]], cycles: int
-    ) -> None:
+    def __init__(self, io: Any, blocks: dict[str, type], plan: Plan) -> None:
         self.blocks = {name: block_type(io.axis("x")) for name, block_type in blocks.items()}
-        self._plan, self._cycles = plan, cycles
+        self._plan = plan
         self.n = 0
         self.seen: list[dict[str, str]] = []
         self.states: list[int] = []
@@ -44,7 +43,6 @@ class Blocks:
         self.seen.append({name: outputs(block) for name, block in self.blocks.items()})
         self.states.append(int(io.axis("x").state))
         self.n += 1
-        io.done(self.n > self._cycles)
 
     def told(self, name: str) -> list[str]:
         """The outputs of a block in their order, each once in a row."""
@@ -52,10 +50,8 @@ class Blocks:
         return [told for told, before in zip(column, [None, *column], strict=False) if told != before]
 
 
-def run(
-    blocks: dict[str, type], plan: Callable[[int], dict[str, dict[str, Any]]], cycles: int = 300
-) -> tuple[PlcBench, Blocks]:
-    bench = PlcBench(lambda io: Blocks(io, blocks, plan, cycles)).run()
+def run(blocks: dict[str, type], plan: Plan, cycles: int = 250) -> tuple[PlcBench, Blocks]:
+    bench = PlcBench(lambda io: Blocks(io, blocks, plan)).run(0.01 * cycles)
     assert not bench.failed, bench.errors()
     return bench, bench.plc
 
@@ -63,7 +59,7 @@ def run(
 TWO = {"first": MC_MoveAbsolute, "second": MC_MoveAbsolute}
 
 
-def two(mode: str, **second: Any) -> Callable[[int], dict[str, dict[str, Any]]]:
+def two(mode: str, **second: Any) -> Plan:
     """The first moves to 500 mm from cycle 10, the second is given in cycle 40, in motion at full velocity."""
     inputs = {"position": 800.0, "buffer_mode": mode, **DYNAMICS, **second}
     return lambda n: {
@@ -202,14 +198,14 @@ def test_a_new_position_is_the_origin_of_what_follows() -> None:
 def test_a_modulo_axis_is_taken_over_in_motion() -> None:
     class OfC(Blocks):
         def __init__(self, io: Any) -> None:
-            super().__init__(io, {}, lambda n: {}, 300)
+            super().__init__(io, {}, lambda n: {})
             self.blocks = {name: MC_MoveModulo(io.axis("c")) for name in ("first", "second")}
             self._plan = lambda n: {
                 "first": {"execute": n >= 10, "position": 90.0, "velocity": 100.0},
                 "second": {"execute": n >= 40, "position": -300.0, "velocity": 100.0, "buffer_mode": "aborting"},
             }
 
-    bench = PlcBench(OfC, machine=PTP).run()
+    bench = PlcBench(OfC, machine=PTP).run(8.0)
     assert bench.plc.told("first")[-1] == "command_aborted" and bench.plc.told("second")[-1] == "done"
     assert bench.position("c") % 360.0 == pytest.approx(300.0, abs=1e-9)
 

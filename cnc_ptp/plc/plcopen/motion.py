@@ -183,7 +183,7 @@ class MC_Stop(ExecuteBlock):
 
 
 class MC_Home(ExecuteBlock):
-    """Homing, as the parameters of the unit say; an axis may get a `position` instead of that of P-AXIS-00152."""
+    """Homing, as the parameters of the unit say; the reference point of an axis gets `position`, or P-AXIS-00152."""
 
     def __call__(self, execute: bool, position: float | None = None) -> None:
         if self._rises(execute):
