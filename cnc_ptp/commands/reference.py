@@ -20,6 +20,7 @@ A command changes the state of a unit at the first cycle of its next cycle block
 | a scenario, timed | `- {at: 4.0, to: channel, do: set_override, percent: 60}` |
 | the command line ([cli.md](cli.md)) | `cnc_ptp do channel set_override 60` |
 | a service ([interfaces.md](interfaces.md#services)) | `/channel/set_override` |
+| a Python program ([client.md](client.md)) | `m.channel.set_override(60)` |
 
 In a scenario, `at` is in seconds; the command acts at the first cycle block that starts at or after it. `to` is the
 name of a unit (axes, spindles and channels of the machine file, and `plc`), `do` the command. Times need not ascend.
