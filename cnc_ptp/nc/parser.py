@@ -258,9 +258,9 @@ class ProgramReader:
         self.structures = StructureReader(section.title)
 
     def _end_section(self) -> None:
-        """Structures that are open and a missing M30 are errors."""
+        """Structures that are open and a missing M30 are errors; a comment that is not closed holds the M30."""
         self.program.targets.update(self.structures.finish(self.errors))
-        if self.ended or self.mdi:
+        if self.ended or self.mdi or self.opened is not None:
             return
         section = self.sections[-1]
         is_main = section.kind == "main program" and not self.called

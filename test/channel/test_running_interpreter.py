@@ -85,6 +85,24 @@ def test_shared_variables_stay_for_the_next_program_and_others_do_not() -> None:
         assert "P-ERR-2" in bench.refused("channel", "start")
 
 
+@pytest.mark.parametrize("ends", ["reset", "error"])
+def test_an_aborted_program_leaves_the_shared_variables_as_they_were(ends: str) -> None:
+    """It is interpreted ahead of the path, so which of its assignments the path has reached is not known."""
+    bench = MachineBench("V.S.A = 1\nM30", end_when_idle=False).run(0.1)
+    stop = "" if ends == "reset" else "#ERROR [ID=7]\n"
+    text = f"V.S.A = 2 V.S.B = 3\nG00 X1\nV.S.A = 4\n{stop}G01 X100 F100\nV.S.A = 5\nM30"
+    assert bench.give("channel", "load", program="b.nc", text=text).accepted
+    assert bench.give("channel", "start").accepted
+    bench.run(0.5)
+    assert bench.position("x") >= 1.0
+    assert bench.give("channel", "reset").accepted
+    bench.run(0.5)
+    assert bench.give("channel", "mdi", text="G00 X0 Y[V.S.A]").accepted
+    bench.run(1.0)
+    assert bench.position("y") == 1.0
+    assert "V.S.B was not declared" in bench.refused("channel", "mdi", text="X[V.S.B]")
+
+
 def test_variables_of_manual_blocks_stay_for_the_next_ones_unless_they_were_refused() -> None:
     bench = MachineBench(end_when_idle=False).run(0.1)
     assert bench.give("channel", "mdi", text="P1 = 5 V.P.A = 2").accepted
@@ -96,13 +114,27 @@ def test_variables_of_manual_blocks_stay_for_the_next_ones_unless_they_were_refu
 
 
 def test_an_aborted_program_leaves_its_interpreter() -> None:
-    bench = MachineBench("P1 = V.A.ACT_POS.X\n$WHILE 1\nX[P1 + 1]\nX0\n$ENDWHILE\nM30", end_when_idle=False).run(1.0)
+    bench = MachineBench(
+        "P1 = V.A.ACT_POS.X\nP2 = 0\n$WHILE 1\nP2 += 1\nX[P1 + 1]\nX0\n$ENDWHILE\nM30", end_when_idle=False
+    ).run(1.0)
     assert bench.last("channel").state[-1] == C.RUNNING
     assert bench.give("channel", "reset").accepted
     bench.run(0.5)
     assert bench.give("channel", "mdi", text="G00 X3").accepted
     bench.run(1.0)
     assert bench.position("x") == 3.0 and bench.errors() == []
+
+
+def test_a_loop_without_an_end_that_only_the_run_shows_stops_the_path_behind_it() -> None:
+    """What the program has read decides that the loop never ends."""
+    text = "P1 = V.A.ACT_POS.X\n$WHILE P1 < 1\nG00 X5\nX0\n$ENDWHILE\nM30"
+    bench = MachineBench(text, end_when_idle=False).run(2.0)
+    reason = "a loop without an end: the program comes back with the same positions and values each time"
+    (error,) = bench.errors()
+    assert error.startswith(
+        f"P-ERR-21583 channel channel: test.nc line 5 column 1 '$ENDWHILE': {reason}; the path stands behind"
+    )
+    assert bench.position("x") == 0.0
 
 
 def test_two_runs_of_such_a_program_are_equal() -> None:

@@ -108,7 +108,6 @@ def test_an_example_of_several_lines(capsys):
 FILES = {
     "drill.nc": "P1 = V.G.@P[1].VALID\nZ[@P1]\nM29",
     "pocket.nc": "M29",
-    **dict.fromkeys(("g87.nc", "g88.nc"), "P1 = @P1 P2 = @P2\nM29"),
     **{path.name: path.read_text(encoding="utf-8") for path in SHIPPED.glob("*.nc")},
 }
 """What the examples call."""

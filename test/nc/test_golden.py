@@ -90,6 +90,7 @@ def test_every_fault_has_a_bad_program():
     assert known == shown | {
         faults.ORDERED.number,
         flow_faults.LOOP_LIMIT.number,
+        flow_faults.CYCLE_FILE.number,
         expression_faults.ONLY_WHILE_RUNNING.number,
         coordinate_faults.SCALE_ROTARY.number,
     }

@@ -50,6 +50,12 @@ def test_an_error_that_a_line_has_by_itself_is_shown_behind_another_one(line: st
     assert found(f"G01 X10 F-5\n{line}\nM30") == [(21022, 1, ""), (number, 2, "")]
 
 
+@pytest.mark.parametrize("begin", ["#COMMENT BEGIN", "#VAR"])
+def test_what_is_not_closed_is_the_only_error_of_its_lines(begin: str) -> None:
+    assert found(f"G00 X1\n{begin}\n\nM30")[0][:2] == (21581, 2)
+    assert 21017 not in [number for number, _, _ in found(f"G00 X1\n{begin}\nM30")]
+
+
 def test_behind_a_line_that_cannot_be_read_the_check_goes_on() -> None:
     assert found("G01 X10 F100\nG01 X20 Q5\nX[1/0]\nM30") == [(20797, 2, ""), (20396, 3, "")]
 

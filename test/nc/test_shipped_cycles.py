@@ -5,6 +5,7 @@ from nc_support import HERE, lines, run
 
 from cnc_ptp.machine.program_files import called_programs
 from cnc_ptp.nc.canonical import LinearMove
+from cnc_ptp.nc.parser import parse_all
 
 BEFORE = "M03 S100\nG00 Z5\nG01 F600\n"
 
@@ -14,10 +15,10 @@ def cycle(call: str) -> list[str]:
     return lines(f"{BEFORE}{call}\nM30", files=called_programs(call, [str(HERE / "library")]))[2:-1]
 
 
-@pytest.mark.parametrize("code", [81, 82, 83, 85, 86, 89])
+@pytest.mark.parametrize("code", [81, 82, 83, 85, 86, 87, 88, 89])
 @pytest.mark.parametrize(("depth", "plane"), [("5", "2"), ("2", "2"), ("-3", "-4")])
 def test_a_depth_above_the_retract_plane_is_refused(code: int, depth: str, plane: str) -> None:
-    third = ", 1" if code in (82, 83, 89) else ""
+    third = ", 1" if code in (82, 83, 88, 89) else ""
     reason = f"PM1 = depth is not below the retract plane, PV1 = {depth}, PV2 = {plane}"
     assert cycle(f"G{code}[{depth}, {plane}{third}]") == [f"error {code} '#ERROR {code} of the program: {reason}'"]
 
@@ -26,6 +27,15 @@ def test_a_depth_above_the_retract_plane_is_refused(code: int, depth: str, plane
 def test_deep_drilling_needs_a_peck_depth(peck: str) -> None:
     text = f"#ERROR 83 of the program: PM1 = peck depth is not above 0, PV1 = {peck}"
     assert cycle(f"G83[-5, 2, {peck}]") == [f"error 83 '{text}'"]
+
+
+def test_a_code_whose_program_is_nowhere_is_refused() -> None:
+    """P-CHAN-00161 names it; without that all codes have a program that ships."""
+    _, errors = parse_all("G00 X1 G81[-10]\nM30", "a.nc", files={}, cycles={"G81": "own.nc"})
+    reason = (
+        "G81 calls own.nc (P-CHAN-00161), which is in no search folder; put a program of this name beside the main one"
+    )
+    assert [str(error) for error in errors] == [f"P-ERR-21598 a.nc line 1 column 8 'G00 X1 G81[-10]': {reason}"]
 
 
 def z(*moves: float | str) -> list[str]:
@@ -43,6 +53,8 @@ def z(*moves: float | str) -> list[str]:
         ("G83[-5, 2, 3]", z(2, "-1F", 2, -0.5, "-4F", 2, -3.5, "-5F", 2)),
         ("G85[-4, 2]", z(2, "-4F", "2F")),
         ("G86[-4, 2]", [*z(2, "-4F"), "S[M5]", *z(2), "S[M3 REV100]"]),
+        ("G87[-4, 2]", [*z(2, "-4F"), "S[M5]", "M00", *z(2), "S[M3 REV100]"]),
+        ("G88[-4, 2, 0.2]", [*z(2, "-4F"), "dwell 0.2 s", "S[M5]", "M00", *z(2), "S[M3 REV100]"]),
         ("G89[-4, 2, 0.2]", [*z(2, "-4F"), "dwell 0.2 s", *z("2F")]),
     ],
 )
@@ -52,7 +64,16 @@ def test_motions(call: str, expected: list[str]) -> None:
 
 @pytest.mark.parametrize(("plane", "place"), [(17, 2), (18, 1), (19, 0)])
 @pytest.mark.parametrize(
-    "call", ["G81[-4, 2]", "G82[-4, 2, 0.5]", "G83[-5, 2, 3]", "G85[-4, 2]", "G86[-4, 2]", "G89[-4, 2, 0.2]"]
+    "call",
+    [
+        "G81[-4, 2]",
+        "G82[-4, 2, 0.5]",
+        "G83[-5, 2, 3]",
+        "G85[-4, 2]",
+        "G86[-4, 2]",
+        "G88[-4, 2, 0.2]",
+        "G89[-4, 2, 0.2]",
+    ],
 )
 def test_the_drilling_axis_is_normal_to_the_plane(plane: int, place: int, call: str) -> None:
     """DIN 66025: the motions of G17, which are along Z, in the other axis; the call leaves the plane as it was."""
