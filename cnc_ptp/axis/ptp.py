@@ -249,7 +249,7 @@ class PtpGenerator:
 
     def steady(self, cycle: int, job: Job) -> bool:
         """The active job keeps within its own limits, and can still stop in its target."""
-        return self.passes_by(cycle, job) == 0.0 and self._braking(cycle, job) == job.limits
+        return self.passes_by(cycle, job) <= 0.0 and self._braking(cycle, job) == job.limits
 
     def lift_ceiling(self, cycle: int) -> None:
         """Nothing is superimposed from now on: the job has its own velocity again."""
@@ -391,7 +391,7 @@ class PtpGenerator:
         return position, velocity, acceleration
 
     def passes_by(self, cycle: int, job: Job) -> float:
-        """How far (mm, deg) beyond the target of `job`, in the direction of motion, a stop would end; at least 0."""
+        """How far (mm, deg) beyond the target of `job`, a stop would end; below 0: before it."""
         position, velocity, acceleration, _ = self.state(cycle)
         ahead = plan_to_velocity(position, velocity, acceleration, 0.0, self._braking(cycle, job)).end[0]
         behind = copysign(1.0, velocity) * (ahead - job.target)

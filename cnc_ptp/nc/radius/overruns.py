@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import combinations, pairwise
-from math import pi
+from math import fsum, pi
 from typing import Final, NamedTuple
 
 from cnc_ptp.nc.radius.corners import OPPOSITE
@@ -90,7 +90,7 @@ def closing(shapes: Sequence[Shape], *, complete: bool) -> Closing | None:
 
 def _is_sure(edges: Sequence[Shape], overruns: Sequence[Shape], points: Sequence[Point]) -> bool:
     """Whether edges bound an area, and overruns are short and meet them at these points alone."""
-    if sum(each.length for each in overruns) > sum(each.length for each in edges):
+    if fsum(each.length for each in overruns) > fsum(each.length for each in edges):
         return False
     if any(isinstance(each, Arc) and abs(each.sweep) > HALF_TURN for each in overruns):
         return False
