@@ -108,6 +108,12 @@ AXIS_ROWS: dict[str, tuple[str, dict[str, Any]]] = {
     "set_friction_compensation": ("set_friction_compensation", {"enabled": False}),
     "lead": ("lead", {"slave": "z", "enabled": True}),
     "group_error": ("group_error", {"source": "y", "error": 23010}),
+    "feed_hold": ("feed_hold", {"enabled": True}),
+    "write_parameter": ("write_parameter", {"parameter": "P-AXIS-00236", "value": 1000.0}),
+    "read_drive_parameter": ("read_drive_parameter", {"idn": "S-0-0403"}),
+    "write_drive_parameter": ("write_drive_parameter", {"idn": "S-0-0148", "value": 3}),
+    "overlay": ("overlay", {"control_unit": "feed_hold", "enabled": True, "value": 1.0, "holder": "p"}),
+    "set_emergency_stop": ("set_emergency_stop", {"enabled": True}),
     "upstream_lost": ("upstream_lost", {"source": "plc"}),
 }
 
@@ -221,6 +227,9 @@ SPINDLE_ROWS: dict[str, tuple[str, dict[str, Any]]] = {
     "set_feedforward": ("set_feedforward", {"enabled": True}),
     "reset_feedforward": ("reset_feedforward", {}),
     "reset": ("reset", {}),
+    "feed_hold": ("feed_hold", {"enabled": True}),
+    "overlay": ("overlay", {"control_unit": "feed_hold", "enabled": True, "value": 1.0, "holder": "p"}),
+    "set_emergency_stop": ("set_emergency_stop", {"enabled": True}),
     "upstream_lost": ("upstream_lost", {"source": "plc"}),
 }
 
@@ -271,6 +280,8 @@ CHANNEL_ROWS: dict[str, tuple[str, dict[str, Any]]] = {
     "set_zero_offset": ("set_zero_offset", {"index": 1, "axis": "X", "value": 1.0}),
     "teach_zero_offset": ("teach_zero_offset", {"index": 1}),
     "set_clamp_position": ("set_clamp_position", {"index": 0}),
+    "overlay": ("overlay", {"control_unit": "feed_hold", "enabled": True, "value": 1.0, "holder": "p"}),
+    "set_emergency_stop": ("set_emergency_stop", {"enabled": True}),
     "upstream_lost": ("upstream_lost", {"source": "plc"}),
 }
 

@@ -76,9 +76,9 @@ class UnitBench:
         return [value for block in self.blocks for value in getattr(block, name)]
 
     def columns(self) -> dict[str, list[Any]]:
-        """What the blocks hold of every cycle; jobs and answers are about commands."""
+        """What the blocks hold of every cycle; jobs, answers and control units are about commands."""
         lists = [name for name, value in _fields(self.blocks[0]) if isinstance(value, list)]
-        return {name: self.column(name) for name in lists if name not in ("job_events", "answers")}
+        return {name: self.column(name) for name in lists if name not in ("job_events", "answers", "control_units")}
 
     @property
     def last(self) -> Any:
