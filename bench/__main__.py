@@ -29,6 +29,7 @@ TOPICS = (
     "offline",
     "graph",
     "service",
+    "client",
     "slaves",
     "spindles",
 )

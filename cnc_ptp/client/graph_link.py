@@ -26,7 +26,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import HeldSignals
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import convert
-from cnc_ptp.nodes.bridge.jog_topics import JOG_IN_FREE_RUN, SECOND_JOG
+from cnc_ptp.nodes.bridge.jog_topics import free_run_text, second_client_text
 from cnc_ptp.nodes.client.client_thread import ClientThread
 from cnc_ptp.nodes.client.jog_sender import JogSender
 from cnc_ptp.nodes.client.latest_blocks import GONE as SILENCE
@@ -150,7 +150,7 @@ class GraphLink(Link):
         """Raises CncError 26136, 26144, 26145."""
         if axis not in self._jogs:
             take_priority([threading.get_native_id()])  # other busy programs must not cause a silence, which ends a jog
-            self._jogs[axis] = Jogging(axis, JogSender(client, axis))
+            self._jogs[axis] = Jogging(axis, client.get_name(), JogSender(client, axis))
         return self._jogs[axis].ask(client, f"axis {axis}: {JOG}", velocity, self.seen.cycle)
 
     # time
@@ -175,6 +175,8 @@ class GraphLink(Link):
         if self._graph is not None and self._is_open and self._gone is None and self._graph.has_ended:
             why = "; ".join(self._graph.failures) or "its run has ended"
             self._gone = CncError(GONE, f"the machine has ended: {why}", "its units stand")
+        if self._thread.failure is not None:
+            raise CncError(GONE, f"the client has failed: {self._thread.failure!r}", "its units continue")
         if self._gone is not None:
             raise self._gone
 
@@ -213,8 +215,9 @@ class GraphLink(Link):
 class Jogging:
     """The jog of one axis: messages as long as it lasts, and what the machine says to them."""
 
-    def __init__(self, axis: str, sender: JogSender) -> None:
-        self._axis = axis
+    def __init__(self, axis: str, name: str, sender: JogSender) -> None:
+        """`name`: of the client."""
+        self._axis, self._name = axis, name
         self._sender = sender
         self._records: list[CommandRecord] = []
         self._ignored: Event | None = None
@@ -255,7 +258,7 @@ class Jogging:
             self._records.append(record)
 
     def take_event(self, event: Event) -> None:
-        if event.source == PLC and event.error_id in (SECOND_JOG, JOG_IN_FREE_RUN):
+        if event.text in (free_run_text(self._axis), second_client_text(self._axis, self._name)):
             self._ignored = event
 
     def go_on(self, seen: Observations) -> None:

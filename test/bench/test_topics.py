@@ -5,7 +5,19 @@ from pathlib import Path
 
 import pytest
 
-from bench import control, graph, interpreter, lookahead, motion, offline, recording, smoothing, spindles, streaming
+from bench import (
+    client,
+    control,
+    graph,
+    interpreter,
+    lookahead,
+    motion,
+    offline,
+    recording,
+    smoothing,
+    spindles,
+    streaming,
+)
 from bench.figures import Effort
 from bench.graph_run import SUPERVISOR, GraphRun, Watch, node_name, run_graph
 from bench.jobs import MACHINE, long_program
@@ -26,6 +38,10 @@ def test_topic_yields_figures(topic) -> None:
     assert said
     assert len({figure.name for figure in figures}) == len(figures) >= 2
     assert all(math.isfinite(figure.value) and figure.unit for figure in figures)
+
+
+def test_the_session_of_a_client_is_carried_out() -> None:
+    assert client.offline_seconds() > 0.0
 
 
 def test_long_program_suits_the_machine() -> None:

@@ -15,6 +15,8 @@ from client_stories import EXPECTED, refusal, setpoints, story
 from graph_support import one_axis_machine, small_machine, verified, wait_until_gone
 
 from cnc_ptp.client import CncError, JobStatus, Machine
+from cnc_ptp.client.graph_link import GraphLink
+from cnc_ptp.client.session import Session
 from cnc_ptp.recording.reader import read_recording
 
 KILLED = """
@@ -257,6 +259,42 @@ def test_a_stopped_client_does_not_know_how_its_job_has_ended(m, mill):
     )
     assert m.x.state.set_position == 20.0
     m.x.move_absolute(0).wait(30.0)
+
+
+def test_a_machine_that_falls_silent_is_gone(ros_domain, folder):
+    machine = one_axis_machine(folder)
+    with Machine.start(machine, namespace="silent", composed=True) as m, Machine.connect(namespace="silent") as other:
+        job = other.x.jog(10).wait(30.0)
+        m.close()
+        assert refusal(lambda: other.run_for(60.0))[:2] == (
+            26161,
+            "nothing new for 5 s: the machine no longer runs; what it does is not known",
+        )
+    assert job.status is JobStatus.ABORTED
+
+
+def test_a_unit_that_says_nothing(m):
+    link = GraphLink(domain=None, namespace="")
+    link.observe({"plc": "plc", "ghost": "axis"}, 0.001)
+    text = "nothing has come of ghost within 1 s; nothing was sent"
+    assert refusal(lambda: link.wait_until_complete(1.0))[:2] == (26166, text)
+    session = Session(link)
+    text = "axis ghost: jog: no answer within 5 s; the jog was ended"
+    assert refusal(lambda: session.ask("ghost", "jog", {"velocity": 1.0}))[:2] == (26136, text)
+    link.seen.take_block = None
+    text = "the client has failed: TypeError(\"'NoneType' object is not callable\"); its units continue"
+    assert refusal(lambda: session.run(session.until(lambda: False, 60.0, "-")))[:2] == (26161, text)
+    assert refusal(lambda: session.ask("plc", "stop_all", {}))[0] == 26161
+    link.close()
+
+
+def test_a_graph_that_does_not_react_is_killed(ros_domain, folder, monkeypatch):
+    monkeypatch.setattr("cnc_ptp.client.graph_link.STOP_TIME", 1.0)
+    monkeypatch.setattr("cnc_ptp.client.started_graph.STOP_TIME", 1.0)
+    with Machine.start(one_axis_machine(folder), namespace="stopped") as m:
+        processes = family(m)
+        os.kill(processes[0], signal.SIGSTOP)
+    assert wait_until_gone(processes) == []
 
 
 def test_the_user_may_have_ros_of_his_own(m):

@@ -31,6 +31,8 @@ class ClientThread:
         self._after = after
         self._calls: deque[tuple[Callable[[MachineClient], Any], Future[Any]]] = deque()
         self._ends = False
+        self.failure: Exception | None = None
+        """Why the thread has ended by itself."""
         self._context = Context()
         started: Future[MachineClient] = Future()
         words = ["--ros-args", "-r", f"__ns:=/{namespace.strip('/')}"] if namespace.strip("/") else []
@@ -66,6 +68,8 @@ class ClientThread:
                 self._do_calls(client)
                 client.take_polled()
                 self._after(client)
+        except Exception as error:  # for those who wait for what will not come
+            self.failure = error
         finally:
             self._ends = True
             for _, future in self._calls:
