@@ -6,7 +6,9 @@ channel gives it setpoints, in every cycle, until `release`.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import inf
+from typing import Final
 
 from cnc_ptp.channel.commanded_spindle import CommandedSpindle
 from cnc_ptp.channel.spindle_functions import SpindleFunctions
@@ -31,7 +33,9 @@ from cnc_ptp.spindle.tool_limits import SpindleLimits
 
 SPINDLE_TURNS = 22060
 SPINDLE_LEFT_PATH = 22061
+SPINDLE_ELSEWHERE = 22062
 SPINDLE_NOT_REFERENCED = 22120
+NOTHING: Final[Mapping[str, float]] = {}
 MOVE_SPINDLES = (SpindleFunction, SpindleCommand, SpindleLink, SpindleAxis)
 
 
@@ -50,6 +54,8 @@ class PathSpindle:
         self._spindle: CommandedSpindle | None = None
         self._asked_in: int | None = None
         """First cycle of the block with the command; None before it has gone out."""
+        self._left_in = 0.0
+        """The same of that which has given the last one back."""
         self.node = ""
         self.override = self._known_override = 1.0
         self.angle = 0.0
@@ -65,6 +71,8 @@ class PathSpindle:
         """Those that go out with the block."""
         if self._commands and self.active and self._asked_in is None:
             self._asked_in = first_cycle
+        if self._commands and self._left_in == inf:
+            self._left_in = float(first_cycle)
         commands, self._commands = self._commands, []
         return commands
 
@@ -85,7 +93,8 @@ class PathSpindle:
     def taken_for(self, block: CanonicalBlock, path: PathMotion) -> bool:
         """The path has the spindle that the block moves or makes its C axis, or needs none; it is asked for it.
 
-        Raises CncError 22060 for one that turns on its own, 22120 for a C axis that does not home automatically.
+        Raises CncError 22060 for one that turns on its own, 22062 for one that another path moves, 22120 for a C axis
+        that does not home automatically.
         """
         motion = block.motion
         if isinstance(motion, LinearMove) and motion.tap is not None:
@@ -103,6 +112,8 @@ class PathSpindle:
         Raises as `taken_for`.
         """
         spindle = self._spindles[name]
+        if self._spindle is None:
+            self._require_free(spindle)
         if self._spindle is None and not spindle.pending and stands(spindle, alone=as_axis):
             if as_axis and not self._referenced(spindle):
                 return False
@@ -110,7 +121,7 @@ class PathSpindle:
             self._send("follow_path")
         return self.node == spindle.node
 
-    def leave_before(self, block: CanonicalBlock) -> None:
+    def leave_before(self, block: CanonicalBlock, path: PathMotion) -> None:
         """The spindle is released before a block that has another motion, or commands for spindles.
 
         The C axis is released by #CAX OFF alone.
@@ -122,7 +133,14 @@ class PathSpindle:
         else:
             leaves = any(isinstance(function, MOVE_SPINDLES) for function in block.functions)
         if leaves:
-            self.release()
+            self.release(path)
+
+    def _require_free(self, spindle: CommandedSpindle) -> None:
+        """Raises CncError 22062 for a spindle that the path of another channel moves; its own has given it back."""
+        block = spindle.block
+        if block is not None and block.first_cycle >= self._left_in and block.status_bits[-1] & SpindleBit.ON_PATH:
+            reason = f"the path of another channel moves spindle {spindle.node} (#CAX or tapping)"
+            raise CncError(SPINDLE_ELSEWHERE, reason)
 
     def _referenced(self, spindle: CommandedSpindle) -> bool:
         """It has a reference point; else it homes (P-AXIS-00015). Raises CncError 22120."""
@@ -157,10 +175,15 @@ class PathSpindle:
         self._known_override = self.override
         return self.override != before
 
-    def release(self) -> None:
-        """The spindle continues on its own, with the next block."""
+    def release(self, path: PathMotion) -> None:
+        """The spindle continues on its own, with the next block, from where the path rests.
+
+        That may be a bit behind its last setpoint, if the path has come to rest within the last cycle.
+        """
         if self.active:
-            self._send("leave_path")
+            travel, speed, _, _ = path.spindle_travel(path.states)
+            self._send("leave_path", {"travel": travel} if self.node and not speed else {})
+            self._left_in = inf
             self._forget()
 
     def _forget(self) -> None:
@@ -168,9 +191,9 @@ class PathSpindle:
         self._spindle, self._asked_in, self.is_axis = None, None, False
         self.node, self.override = "", 1.0
 
-    def _send(self, command: str) -> None:
+    def _send(self, command: str, arguments: Mapping[str, float] = NOTHING) -> None:
         assert self._spindle is not None
-        self._commands.append(Command(self._spindle.node, command, {"source": self._channel}))
+        self._commands.append(Command(self._spindle.node, command, {"source": self._channel, **arguments}))
 
 
 def limits_in_gear(spindle: CommandedSpindle) -> tuple[SpindleLimits, int]:
@@ -185,12 +208,14 @@ def limits_in_gear(spindle: CommandedSpindle) -> tuple[SpindleLimits, int]:
 def stands(spindle: CommandedSpindle, *, alone: bool = False) -> bool:
     """It may be taken over: it stands, or (not `alone`) turns as a slave at its speed; False while it comes to that.
 
-    Raises CncError 22060 for one that turns on its own.
+    One without power is asked, too: it refuses and says why. Raises CncError 22060 for one that turns on its own.
     """
     block = spindle.block
     if block is None:
         return False
     state = block.state[-1]
+    if state == S.DISABLED:
+        return True
     if state != S.CONTINUOUS_MOTION:
         return state == S.STANDSTILL and block.speed_zero[-1]
     if block.master and not alone:

@@ -247,7 +247,7 @@ class ProgramSequence:
 
     def _stop_spindles(self) -> None:
         """M05 for the spindles that the channel has started, except those to keep; its couplings end."""
-        self._path_spindle.release()
+        self._path_spindle.release(self._motion)
         self._functions.expect_nothing(self._keep)
         self._queue(self._functions.at_abort(self.source, self._keep))
 
@@ -475,7 +475,7 @@ class ProgramSequence:
             self._wait(Phase.WAIT_END, Moment.AFTER, *ALL_LATE)
             return True
         self._reach(block)
-        self._path_spindle.leave_before(block)
+        self._path_spindle.leave_before(block, self._motion)
         gear = self._functions.gear_change(block)
         if not gear.commands:
             self._functions_before(first_cycle, cycle)
@@ -632,7 +632,7 @@ class ProgramSequence:
         self.finished = True
 
     def _end_program(self) -> None:
-        self._path_spindle.release()
+        self._path_spindle.release(self._motion)
         self._motion.feed = 0.0
         self._block = None
         self._waits = []

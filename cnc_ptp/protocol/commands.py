@@ -171,7 +171,7 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "coupling_answer": {"granted": SWITCH, "reason": TEXT},
         "decouple": {**OWNER},
         "follow_path": {**FOR},
-        "leave_path": {**FOR},
+        "leave_path": {"travel": OPTIONAL_NUMBER, **FOR},
         "set_feedforward": FEEDFORWARD,
         "reset_feedforward": {},
         "reset": {},

@@ -57,12 +57,15 @@ class PathCommands:
         spindle.travel = PathTravel(source, spindle.cycle_time)
         spindle.unsettled = True
 
-    def do_leave_path(self, cycle: int, *, source: str) -> str | None:
-        """The path no longer moves the spindle, which stands where it has brought it, or turns as before."""
+    def do_leave_path(self, cycle: int, *, source: str, travel: float | None = None) -> str | None:
+        """The path no longer moves the spindle, which stands where it has brought it, or turns as before.
+
+        `travel`: deg since it was taken over, where the path has come to rest.
+        """
         spindle = self._spindle
         if spindle.travel is None or spindle.travel.channel != source:
             return f"spindle {spindle.name}: leave_path without effect, no path of '{source}' moves it"
-        spindle.leave_path(cycle)
+        spindle.leave_path(cycle, travel)
         return None
 
     def take_setpoints(self, cycle: int, block: object) -> None:

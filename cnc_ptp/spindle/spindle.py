@@ -263,11 +263,13 @@ class Spindle:
 
     # path of a channel
 
-    def leave_path(self, cycle: int) -> None:
-        """Its own motion is left; what speed it had of the path ends on its ramp."""
+    def leave_path(self, cycle: int, travel: float | None = None) -> None:
+        """Its own motion is left; what speed it had of the path ends on its ramp, or at `travel` (deg) of the path."""
         assert self.travel is not None
         position, speed, _ = self.motion(cycle)
         own = self._own_motion(cycle)[1]
+        if travel is not None:
+            position, speed = self._own_motion(cycle)[0] + travel, own
         self.travel = None
         self.follow(cycle, plan_speed(position, speed, own if self.finished(cycle) else 0.0, self.limits.ramp))
         if self.state == S.SYNCHRONIZED_MOTION:

@@ -297,3 +297,12 @@ def test_replay_gives_the_same_again() -> None:
     again, first = replay(bench.machine, bench.records, len(bench.blocks["plc"])), bits(bench)
     for unit in ("channel", "s", "x", "y", "z"):
         assert again[unit] == first[unit]
+
+
+@pytest.mark.parametrize("behind", ["", "G01 X10 F2000\n", "G04 0.1\n", "G63 Z-2 F250 S200\nZ5 S-200\n"])
+@pytest.mark.parametrize("feed", [125, 250, 333])
+def test_the_spindle_ends_where_the_path_does(feed: int, behind: str) -> None:
+    """Also where the path comes to rest within the last cycle of a block: hole after hole begins at the same angle."""
+    bench = run(f"G00 Z5\nM19 S.POS=90 S300\nG63 Z-5 F{feed} S{feed * 0.8}\nZ5 S-{feed * 0.8}\n{behind}M30")
+    assert bench.errors() == []
+    assert bench.column("s", "set_position_deg")[-1] == pytest.approx(90.0, abs=FOLLOWS)

@@ -123,6 +123,8 @@ class RadiusCompensation:
             raise self._at(faults.NOT_WHILE, block, what=wait_of(block))
         if block.motion is not None and self._state.feed_mode in (TIME, INVERSE):
             raise self._at(faults.NOT_WHILE, block, what="a feed by time (G93)")
+        if isinstance(block.motion, LinearMove) and block.motion.thread is not None:
+            raise self._at(faults.NOT_WHILE, block, what="a thread (G33, G34, G35)")
         entry = Entry(block, self._state.coordinates.limits, contour_feed=self._state.radius_compensation.contour_feed)
         if not self._side:
             yield from self._before_contour(entry, before)
