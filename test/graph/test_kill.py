@@ -222,7 +222,6 @@ def test_killed_supervisor_leaves_no_orphan(running):
 def test_interrupt_while_the_nodes_start(tmp_path):
     graph = Running(one_axis_machine(tmp_path), "--record", tmp_path / "run.mcap")
     nodes = graph.wait_for_nodes(4)
-    time.sleep(0.2)
     graph.process.send_signal(signal.SIGTERM)
     output = graph.finish(expect=1)
     assert "P-ERR-26106 the run was interrupted (SIGTERM); nothing has moved yet" in output
