@@ -86,8 +86,8 @@ class HeldSignals:
     ) -> None:
         for number, handler in self._before.items():
             signal.signal(number, handler)
-        for number in self.given:
-            signal.raise_signal(number)
+        for given in self.given:
+            signal.raise_signal(given)
 
 
 HELD = (signal.SIGINT, signal.SIGTERM)

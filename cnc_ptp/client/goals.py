@@ -51,7 +51,7 @@ def runs_with_master(blocks: Blocks, unit: str, arguments: Mapping[str, Any]) ->
     factor = arguments["factor"]
     place = arguments["slave_position"] + factor * (master.set_position[-1] - arguments["master_position"])
     off = abs(block.set_position[index] - place), abs(block.set_velocity[index] - factor * master.set_velocity[-1])
-    return max(off) <= TOLERANCE
+    return bool(max(off) <= TOLERANCE)
 
 
 def takes_setpoints(blocks: Blocks, unit: str, arguments: Mapping[str, Any]) -> bool:

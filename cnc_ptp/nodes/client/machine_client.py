@@ -172,5 +172,5 @@ def arguments_of(kind: str, unit: str, command: str) -> Arguments:
         text = f"unknown command '{command}'"
         raise CncError(UNKNOWN_COMMAND, text, f"nothing was sent. Known: {known}", where=where)
     fields = service.Request.get_fields_and_field_types()
-    known = COMMANDS[kind][command].items()
-    return {name: argument for name, argument in known if name in fields and argument.kind != "rows"}
+    arguments = COMMANDS[kind][command].items()
+    return {name: argument for name, argument in arguments if name in fields and argument.kind != "rows"}
