@@ -18,6 +18,7 @@ from cnc_ptp.protocol.unit import PLC
 
 Path = str | PathLike[str]
 Kind = TypeVar("Kind", Axis, Spindle, Channel)
+OneKind = TypeVar("OneKind")
 
 
 class Machine:
@@ -197,13 +198,13 @@ class Machine:
         return f"<machine of {', '.join(self._units)}{', closed' if self._session.closed else ''}>"
 
 
-class Units(dict[str, Kind]):
+class Units(dict[str, OneKind]):
     """The units of one kind by name; a name that is not there has its own error."""
 
-    def __init__(self, units: Mapping[str, Kind], what: str) -> None:
+    def __init__(self, units: Mapping[str, OneKind], what: str) -> None:
         super().__init__()
         self.update(units)
         self._what = what
 
-    def __missing__(self, name: str) -> Kind:
+    def __missing__(self, name: str) -> OneKind:
         raise unknown_unit(name, self, self._what)

@@ -32,7 +32,7 @@ class ClientThread:
         self._calls: deque[tuple[Callable[[MachineClient], Any], Future[Any]]] = deque()
         self._ends = False
         self.failure: Exception | None = None
-        """Why the thread has ended by itself."""
+        """Why the thread has ended before it was to."""
         self._context = Context()
         started: Future[MachineClient] = Future()
         words = ["--ros-args", "-r", f"__ns:=/{namespace.strip('/')}"] if namespace.strip("/") else []
