@@ -332,7 +332,10 @@ def test_without_a_program() -> None:
 def test_a_broken_program_keeps_the_old_one() -> None:
     bench = MachineBench("%P\nG01 X3 F3000\nM30", start=False, end_when_idle=False).run(0.01)
     refused = bench.refused("channel", "load", program="bad.nc", text="%P\nG01 X1.2.3\nM30")
-    assert refused == "P-ERR-21003 bad.nc line 2 column 5 'G01 X1.2.3': 'X1.2.3' is not a letter with a number"
+    assert (
+        refused
+        == "P-ERR-21003 bad.nc line 2 column 5 'G01 X1.2.3': 'X1.2.3' is not a letter with a number; nothing was changed"
+    )
     bench.give("channel", "start")
     bench.run(1.0)
     assert bench.position("x") == 3.0
@@ -371,7 +374,7 @@ def test_an_arc_beyond_a_soft_limit_between_its_end_points() -> None:
     assert far.refusals()[0] == (
         "P-ERR-120002 test.nc line 3 column 1 'G02 X290 Y-40 I0 J-20 F3000': axis X: 310 mm lies beyond the "
         "positive soft "
-        "limit 300 mm (P-AXIS-00178)"
+        "limit 300 mm (P-AXIS-00178); nothing was started"
     )
 
 

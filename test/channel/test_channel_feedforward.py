@@ -199,14 +199,16 @@ def test_compensation_that_is_not_permitted_is_found_by_the_check() -> None:
 def test_a_start_with_compensation_that_is_not_permitted_is_refused_and_nothing_moves() -> None:
     bench = run("%P\nX1 F600 G01\nY[COMP ON FRICT]\nM30", permitting("x"))
     where = "test.nc line 3 column 1 'Y[COMP ON FRICT]'"
-    assert bench.refusals() == [f"P-ERR-70495 {where}: {NOT_PERMITTED}"]
+    assert bench.refusals() == [f"P-ERR-70495 {where}: {NOT_PERMITTED}; nothing was started"]
     assert bench.position("x") == 0.0 and sent(bench) == []
 
 
 def test_mdi_with_compensation_that_is_not_permitted_is_refused() -> None:
     bench = MachineBench(end_when_idle=False, machine=permitting())
     where = "mdi line 1 column 1 'Y[COMP ON FRICT]'"
-    assert bench.refused("channel", "mdi", text="Y[COMP ON FRICT]") == f"P-ERR-70495 {where}: {NOT_PERMITTED}"
+    assert bench.refused("channel", "mdi", text="Y[COMP ON FRICT]") == (
+        f"P-ERR-70495 {where}: {NOT_PERMITTED}; nothing was executed"
+    )
 
 
 def test_switching_off_is_permitted_on_every_axis() -> None:

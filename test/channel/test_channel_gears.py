@@ -160,7 +160,7 @@ def test_a_speed_beyond_every_gear_is_refused_before_anything_moves() -> None:
     assert bench.refusals() == [
         "P-ERR-21069 test.nc line 3 column 1 'S8000 M3': speed 8000 rpm of spindle S is in no gear stage "
         "(P-CHAN-00058, P-CHAN-00055): M40 50 to 560 rpm, M41 400 to 800 rpm, M42 700 to 3500 rpm, "
-        "M43 3501 to 4000 rpm, M44 3800 to 5500 rpm, M45 5400 to 7000 rpm"
+        "M43 3501 to 4000 rpm, M44 3800 to 5500 rpm, M45 5400 to 7000 rpm; nothing was started"
     ]
     assert bench.position("x") == 0.0
 
@@ -210,6 +210,6 @@ def test_a_positioning_above_the_active_gear_is_found_when_the_program_is_read()
     bench = MachineBench("%P\nG01 X1 F3000\nM19 S501 S.POS=0\nM30", machine=machine, end_when_idle=False).run(0.2)
     assert bench.refusals() == [
         "P-ERR-22010 test.nc line 3 column 5 'M19 S501 S.POS=0': spindle S: 501 rpm is above the maximum 500 rpm of gear 1 "
-        "(P-AXIS-00212)"
+        "(P-AXIS-00212); nothing was started"
     ]
     assert set(bench.column("x", "set_position")) == {0.0}

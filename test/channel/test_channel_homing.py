@@ -70,7 +70,7 @@ def test_the_program_continues_from_where_the_axes_stand() -> None:
 def test_a_program_moves_no_axis_that_is_not_referenced() -> None:
     bench = MachineBench("N10 G0 X10\nM30", machine=mill()).run(1.0)
     assert bench.refusals() == [
-        "P-ERR-22034 test.nc line 1 column 8 'N10 G0 X10': axis X is not referenced (P-MACH-00061); G74 X1 first"
+        "P-ERR-22034 test.nc line 1 column 8 'N10 G0 X10': axis X is not referenced (P-MACH-00061); G74 X1 first; nothing was started"
     ]
     assert bench.position("x") == 0.0
     bench = run("N10 G74 X1\nN20 X5\nN30 Y10\nM30")
@@ -168,7 +168,7 @@ def test_axes_with_absolute_encoders() -> None:
     assert S.HOMING not in bench.states("x")
     bench = run("N10 G74 X1\nM30", referenced=True, kind="DISABLED")
     assert bench.refusals() == [
-        "P-ERR-60313 test.nc line 1 column 9 'N10 G74 X1': axis X cannot be homed (P-AXIS-00299 = DISABLED)"
+        "P-ERR-60313 test.nc line 1 column 9 'N10 G74 X1': axis X cannot be homed (P-AXIS-00299 = DISABLED); nothing was started"
     ]
 
 

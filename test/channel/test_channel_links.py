@@ -87,14 +87,14 @@ def test_the_speed_has_to_suit_the_slaves() -> None:
     bench = MachineBench(f"%P\n{ENABLE}M3 S12500\nM30", machine=linked(), end_when_idle=False).run(0.1)
     assert bench.refusals() == [
         "P-ERR-22010 test.nc line 4 column 4 'M3 S12500': spindle S: 12500 rpm is above the maximum 12000 rpm "
-        "(P-AXIS-00212)"
+        "(P-AXIS-00212); nothing was started"
     ]
     weak = replace(SLOW, gears={1: replace(SLOW.gears[1], max_speed=6000.0)})
     machine = machine_of(*three(), units={"t": weak})
     bench = MachineBench(f"%P\n{ENABLE}M3 S1500\nM30", machine=machine, end_when_idle=False).run(0.1)
     assert bench.refusals() == [
         "P-ERR-22010 test.nc line 4 column 4 'M3 S1500': spindle S2: 1500 rpm is above the maximum 1000 rpm "
-        "(P-AXIS-00212)"
+        "(P-AXIS-00212); nothing was started"
     ]
 
 

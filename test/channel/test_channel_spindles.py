@@ -119,7 +119,7 @@ def test_a_third_spindle_is_unknown_in_the_second_channel() -> None:
     bench = both("M3 S100", "S3[M3 REV500]")
     assert bench.refusals() == [
         "P-ERR-20180 mdi line 1 column 1 'S3[M3 REV500]': spindle S3 does not belong to this channel; "
-        "its spindles are: S, S2"
+        "its spindles are: S, S2; nothing was executed"
     ]
 
 
@@ -269,8 +269,8 @@ def test_the_flag_does_not_stop_what_another_channel_turns() -> None:
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
-        ("M19 S.POS=5", "P-ERR-70252 test.nc line 2 column 1 'M19 S.POS=5': {} positioned"),
-        ("G74 S1", "P-ERR-24008 test.nc line 2 column 1 'G74 S1': {} homed"),
+        ("M19 S.POS=5", "P-ERR-70252 test.nc line 2 column 1 'M19 S.POS=5': {} positioned; nothing was started"),
+        ("G74 S1", "P-ERR-24008 test.nc line 2 column 1 'G74 S1': {} homed; nothing was started"),
     ],
 )
 def test_a_sensorless_spindle_is_not_positioned(text: str, reason: str) -> None:

@@ -297,7 +297,7 @@ def test_a_free_function_of_a_spindle_has_to_exist() -> None:
     bench = MachineBench("%P\nS[M77]\nM30", end_when_idle=False).run(0.05)
     assert bench.refusals() == [
         "P-ERR-22011 test.nc line 2 column 3 'S[M77]': M77 does not exist on this machine (P-CHAN-00041). "
-        "Known: M0, M1, M2, M3, M4, M5, M6, M7, M8, M9, M17, M19, M29, M30"
+        "Known: M0, M1, M2, M3, M4, M5, M6, M7, M8, M9, M17, M19, M29, M30; nothing was started"
     ]
 
 

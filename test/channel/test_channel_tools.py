@@ -56,7 +56,7 @@ def test_t_and_d_go_to_the_plc() -> None:
 )
 def test_an_unknown_tool_is_refused_before_anything_moves(line: str, text: str) -> None:
     bench = run(f"G00 X10\n{line}\nM30")
-    assert bench.refusals() == [text]
+    assert bench.refusals() == [f"{text}; nothing was started"]
     assert places(bench) == (0.0, 0.0, 0.0)
 
 
@@ -66,7 +66,7 @@ def test_soft_limits_are_those_of_the_axis_with_the_tool() -> None:
     bench = run("T2 D2\nG00 Z39.6\nM30")
     assert bench.refusals() == [
         "P-ERR-120002 test.nc line 2 column 1 'G00 Z39.6': "
-        "axis Z: 150.1 mm lies beyond the positive soft limit 150 mm (P-AXIS-00178)"
+        "axis Z: 150.1 mm lies beyond the positive soft limit 150 mm (P-AXIS-00178); nothing was started"
     ]
 
 

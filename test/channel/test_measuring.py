@@ -374,7 +374,7 @@ def test_an_axis_that_cannot_measure() -> None:
     bench = run("N10 G91 G100 X5 Y1 F600\nM30", y={"measures": False})
     place = "test.nc line 1 column 17 'N10 G91 G100 X5 Y1 F600'"
     text = "axis Y cannot measure (P-AXIS-00118); axes that can: X, Z"
-    assert bench.refusals() == [f"P-ERR-50059 {place}: {text}"]
+    assert bench.refusals() == [f"P-ERR-50059 {place}: {text}; nothing was started"]
     turned = run("#ROTATION ON [ANGLE=45]\nG100 X5 F600\nM30", **{axis: {"measures": False} for axis in "xyz"})
     assert "axis X cannot measure (P-AXIS-00118); axes that can: none" in turned.refusals()[0]
 

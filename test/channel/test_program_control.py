@@ -234,7 +234,10 @@ def test_a_called_file_goes_before_one_of_the_loaded_program() -> None:
 def test_faults_in_a_called_file_refuse_manual_blocks() -> None:
     bench = MachineBench(end_when_idle=False).run(0.1)
     refused = bench.refused("channel", "mdi", text="G00 X3\nL own.nc", files={"own.nc": "X[1/0]\nM29"})
-    assert refused == "P-ERR-20396 own.nc line 1 column 4 'X[1/0]': division by 0, called in mdi line 2"
+    assert (
+        refused
+        == "P-ERR-20396 own.nc line 1 column 4 'X[1/0]': division by 0, called in mdi line 2; nothing was executed"
+    )
     bench.run(0.5)
     assert bench.position("x") == 0.0
 

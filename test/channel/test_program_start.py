@@ -235,7 +235,8 @@ def test_the_way_to_the_start_point_is_within_the_limits() -> None:
     """Those of the axis lists and of G98, G99; an axis that stays may be beyond a limit that came later."""
     bench = loaded("G00 X50 Y20\nG99 X40\nN10 G00 Y30\nM30")
     assert bench.refused("channel", "start", block_number=10) == (
-        "P-ERR-120002 test.nc line 3 column 1 'N10 G00 Y30': axis X: 50 mm lies beyond the software limit 40 mm of G99"
+        "P-ERR-120002 test.nc line 3 column 1 'N10 G00 Y30': axis X: 50 mm lies beyond the software limit 40 mm of G99; "
+        "nothing was started"
     )
     assert bench.give("channel", "start").accepted
     bench.run(3.0)
@@ -251,7 +252,9 @@ def test_an_axis_without_reference_does_not_go_to_the_start_point() -> None:
     machine.axes["x"] = replace(x, homing=replace(x.homing, required=True), referenced_at_start=False)
     bench = MachineBench("G00 X5\nG00 Y5\nM30", machine=machine, start=False, end_when_idle=False).run(0.1)
     text = "axis X is not referenced (P-MACH-00061); G74 X1 first"
-    assert bench.refused("channel", "start", line=2) == f"P-ERR-22034 test.nc line 1 column 5 'G00 X5': {text}"
+    assert bench.refused("channel", "start", line=2) == (
+        f"P-ERR-22034 test.nc line 1 column 5 'G00 X5': {text}; nothing was started"
+    )
 
 
 def test_a_called_program_and_a_place_in_it() -> None:

@@ -40,7 +40,7 @@ def test_a_fault_behind_what_only_the_run_knows_stops_the_program_when_it_is_rea
 
 def test_a_fault_that_is_known_before_refuses_the_start() -> None:
     bench = MachineBench("G00 X1\nY5\nX[1/0]\nM30").run()
-    assert bench.refusals() == ["P-ERR-20396 test.nc line 3 column 4 'X[1/0]': division by 0"]
+    assert bench.refusals() == ["P-ERR-20396 test.nc line 3 column 4 'X[1/0]': division by 0; nothing was started"]
     assert bench.position("x") == bench.position("y") == 0.0
 
 
@@ -195,7 +195,7 @@ def test_a_fault_that_only_the_run_shows_names_the_callers() -> None:
 def test_a_refused_start_names_the_callers() -> None:
     bench = MachineBench(CALLED % ("X[1/0]", "")).run()
     place = f"test.nc line 2 column 4 'X[1/0]': division by 0, {CALLERS} 9"
-    assert bench.refusals() == [f"P-ERR-20396 {place}"]
+    assert bench.refusals() == [f"P-ERR-20396 {place}; nothing was started"]
 
 
 def test_the_override_of_the_path_is_read_when_the_path_stands() -> None:
