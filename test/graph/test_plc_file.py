@@ -33,7 +33,7 @@ class Plc:
     def cycle(self, io):
         self.gear(True, master="x", ratio_numerator=-1, ratio_denominator=2)
         self.move(self.gear.in_gear or self.move.execute, position=500.0, velocity=700.0)
-        self.stop(io.time > 0.4 and not self.stop.done)
+        self.stop(0.4 < io.time < 1.1)
         self.back(io.time > 1.2, distance=-io.axis("x").actual_position)
         self.out(self.back.done)
         io.done(self.out.done)
