@@ -3,7 +3,7 @@ N10 G00 Z100
 N20 T2 M6                     ; the magazine has two pockets to go
 N30 M3 S1200                  ; waits for the door
 N40 G00 X60
-N50 T5                        ; turns the magazine, the program goes on
+N50 T5                        ; turns the magazine, the program continues
 N60 G01 X-60 F3000
 N70 M5
 N80 G00 Z100

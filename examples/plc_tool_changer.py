@@ -1,6 +1,6 @@
 """A tool changer and a door: a PLC in a file for config/mill.yaml (docs/plc.md).
 
-T turns the magazine while the program goes on. M6 waits until the magazine is there, the spindle stands at its change
+T turns the magazine while the program continues. M6 waits until the magazine is there, the spindle stands at its change
 position and the arm has changed the tools. While the door is open the path stands and the spindle does not turn: M3
 waits until the door is closed.
 

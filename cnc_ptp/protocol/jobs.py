@@ -1,4 +1,4 @@
-"""Jobs of a unit: every command that moves it, or runs a program, has a number and an end that the PLC is told.
+"""Jobs of a unit: every command that moves it, or runs a program, has a number and an end that the PLC learns.
 
 PLCopen's function blocks rest on it: a block is Active while its job is, Done when that was finished in full, and
 CommandAborted when another job took its place (PLCopen Motion Control part 1, 2.4.1).

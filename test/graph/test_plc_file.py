@@ -33,7 +33,7 @@ class Plc:
     def cycle(self, io):
         self.gear(True, master="x", ratio_numerator=-1, ratio_denominator=2)
         self.move(self.gear.in_gear or self.move.execute, position=500.0, velocity=700.0)
-        self.stop(io.time > 0.4 and not self.stop.done)
+        self.stop(0.4 < io.time < 1.1)
         self.back(io.time > 1.2, distance=-io.axis("x").actual_position)
         self.out(self.back.done)
         io.done(self.out.done)
@@ -91,9 +91,9 @@ class Plc:
             {fault}
 """
 FAULTS = {
-    "raise ValueError('no tool')": "ValueError: no tool",
-    "while True: pass": "the PLC cycle takes longer than 200 ms (P-MACH watchdog_ms)",
-    "__import__('time').sleep(3.0)": "the PLC cycle takes longer than 200 ms (P-MACH watchdog_ms)",
+    "raise ValueError('no tool')": (22161, "ValueError: no tool"),
+    "while True: pass": (22162, "the PLC cycle takes longer than 200 ms (P-MACH watchdog_ms)"),
+    "__import__('time').sleep(3.0)": (22162, "the PLC cycle takes longer than 200 ms (P-MACH watchdog_ms)"),
 }
 
 
@@ -106,8 +106,9 @@ def test_a_plc_that_fails_stops_the_machine_on_its_ramps(tmp_path, fault, option
     recorded = verified(recording)
     (error,) = [event for event in recorded.events if event.severity == 2]
     assert (error.cycle, error.line) == (600, 14)
-    assert error.error_id == (22161 if "raise" in fault else 22162)
-    assert error.text == (f"plc plc: plc.py:14 '{fault}': {FAULTS[fault]}; everything is stopped and the run ends")
+    number, reason = FAULTS[fault]
+    assert error.error_id == number
+    assert error.text == (f"plc plc: plc.py:14 '{fault}': {reason}; everything is stopped and the run ends")
     assert error.text in output.stderr
     x, y = (recorded.states[f"/{axis}/state"] for axis in ("x", "y"))
     assert x["set_velocity"][-1] == 0.0 and np.array_equal(x["set_position"], y["set_position"])

@@ -151,9 +151,10 @@ def test_a_buffer_mode_goes_to_the_axis_and_a_spindle_has_two() -> None:
     assert axis.last.arguments == {"target": 1.0, "buffer_mode": "blending_low"}
     orient = MC_OrientSpindle(spindle)
     orient(True, position=1.0, buffer_mode="blending_low")
-    assert spindle.given == [] and orient.error_id == 22166
-    assert orient.error_text == (
-        "spindle s: orient refused: buffer_mode = 'blending_low' is not aborting or buffered; nothing was changed"
+    assert spindle.given == []
+    assert (orient.error_id, orient.error_text) == (
+        22166,
+        "spindle s: orient refused: buffer_mode = 'blending_low' is not aborting or buffered; nothing was changed",
     )
 
 
@@ -614,6 +615,13 @@ def test_parameters_of_the_file_and_unknown_ones() -> None:
         return Recorder(step)
 
     PlcBench(make, machine=PTP).run()
-    text = "axis /x has no parameter 'getriebe.0.kvv'; did you mean getriebe[i].kv (P-AXIS-00099)?; nothing was read"
-    assert seen[0][:3] == (True, 10000000, 0) and seen[5][0] is False and seen[5][2:] == (22169, text)
+    assert (
+        seen[0][:3] == (True, 10000000, 0)
+        and seen[5][0] is False
+        and seen[5][2:]
+        == (
+            22169,
+            "axis /x has no parameter 'getriebe.0.kvv'; did you mean getriebe[i].kv (P-AXIS-00099)?; nothing was read",
+        )
+    )
     assert seen[6][2:] == (0, "")

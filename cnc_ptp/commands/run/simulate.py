@@ -124,7 +124,7 @@ class EndlessCycle:
         """When the last block was computed."""
 
     def break_in(self, frame: FrameType | None) -> None:
-        """At a signal: raises KeyboardInterrupt if the file has been at work for long."""
+        """At a signal: raises KeyboardInterrupt if the file has been busy for long."""
         while frame is not None and frame.f_code.co_filename != self._path:
             frame = frame.f_back
         if frame is not None and time.monotonic() - self.ticked_at > LONG_CYCLE:

@@ -1,4 +1,4 @@
-"""Error numbers that a function block gives by itself; all others come from its unit."""
+"""Error numbers of function blocks; all others come from their units."""
 
 STOP_HOLDS = 22165
 """MC_Stop holds the unit while its execute is true."""

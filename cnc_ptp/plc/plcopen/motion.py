@@ -86,7 +86,7 @@ class MC_MoveAdditive(DistanceBlock):
 
 
 class MC_MoveSuperimposed(ExecuteBlock):
-    """Adds `distance` to the motion of an axis, at most `velocity_difference` faster; that motion goes on."""
+    """Adds `distance` to the motion of an axis, at most `velocity_difference` faster; that motion continues."""
 
     def __call__(
         self,

@@ -100,7 +100,7 @@ class Reference:
             self._waiting.append((0, command))
 
     def take(self, block: CycleBlock | None, lost: bool) -> None:
-        """The newest block, with answers and jobs; `lost`: none will come any more."""
+        """The newest block, with answers and jobs; `lost`: no other will come."""
         self.block, self.lost = block, lost
         if lost:
             text = f"{self.kind} {self.name} is lost"
