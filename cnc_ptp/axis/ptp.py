@@ -165,6 +165,8 @@ class PtpGenerator:
             return max(cycle, self._end_cycle())
         if job.through:
             return self._crossing(cycle, Activation(job.target, copysign(1.0, job.through), 0.0))
+        if isinf(job.target):
+            return max(cycle, self._end_cycle()) if self._profile.end[1] else None
         constant = self._constant_from(cycle, self._level(job).velocity) if in_velocity else None
         if constant is None and self._ends_at(job):
             return max(cycle, self._end_cycle())
@@ -249,7 +251,7 @@ class PtpGenerator:
 
     def steady(self, cycle: int, job: Job) -> bool:
         """The active job keeps within its own limits, and can still stop in its target."""
-        return self.passes_by(cycle, job) == 0.0 and self._braking(cycle, job) == job.limits
+        return self.passes_by(cycle, job) <= 0.0 and self._braking(cycle, job) == job.limits
 
     def lift_ceiling(self, cycle: int) -> None:
         """Nothing is superimposed from now on: the job has its own velocity again."""
@@ -391,7 +393,7 @@ class PtpGenerator:
         return position, velocity, acceleration
 
     def passes_by(self, cycle: int, job: Job) -> float:
-        """How far (mm, deg) beyond the target of `job`, in the direction of motion, a stop would end; at least 0."""
+        """How far (mm, deg) beyond the target of `job`, in the direction of motion, a stop would end; before it: < 0."""
         position, velocity, acceleration, _ = self.state(cycle)
         ahead = plan_to_velocity(position, velocity, acceleration, 0.0, self._braking(cycle, job)).end[0]
         behind = copysign(1.0, velocity) * (ahead - job.target)
