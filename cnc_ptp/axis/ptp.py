@@ -393,7 +393,7 @@ class PtpGenerator:
         return position, velocity, acceleration
 
     def passes_by(self, cycle: int, job: Job) -> float:
-        """How far (mm, deg) beyond the target of `job`, in the direction of motion, a stop would end; before it: < 0."""
+        """How far (mm, deg) a stop would end beyond the target of `job`, in the direction of motion; < 0: before it."""
         position, velocity, acceleration, _ = self.state(cycle)
         ahead = plan_to_velocity(position, velocity, acceleration, 0.0, self._braking(cycle, job)).end[0]
         behind = copysign(1.0, velocity) * (ahead - job.target)
@@ -496,6 +496,7 @@ class PtpGenerator:
         reached = self._nearest_reached(cycle, job, velocity)
         if reached is not None:
             reduced = self._job_in_motion(cycle, job.target, job.limits._replace(velocity=reached), job.ramp)
+            reduced = replace(reduced, through=job.through)
             wanted = replace(reduced, limits=job.limits._replace(velocity=velocity))
             self._begin(cycle, wanted, *self._table(cycle, reduced))
 
