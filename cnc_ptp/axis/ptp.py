@@ -165,6 +165,8 @@ class PtpGenerator:
             return max(cycle, self._end_cycle())
         if job.through:
             return self._crossing(cycle, Activation(job.target, copysign(1.0, job.through), 0.0))
+        if isinf(job.target):
+            return max(cycle, self._end_cycle()) if self._profile.end[1] else None
         constant = self._constant_from(cycle, self._level(job).velocity) if in_velocity else None
         if constant is None and self._ends_at(job):
             return max(cycle, self._end_cycle())
@@ -391,7 +393,7 @@ class PtpGenerator:
         return position, velocity, acceleration
 
     def passes_by(self, cycle: int, job: Job) -> float:
-        """How far (mm, deg) beyond the target of `job`, a stop would end; below 0: before it."""
+        """How far (mm, deg) a stop would end beyond the target of `job`, in the direction of motion; < 0: before it."""
         position, velocity, acceleration, _ = self.state(cycle)
         ahead = plan_to_velocity(position, velocity, acceleration, 0.0, self._braking(cycle, job)).end[0]
         behind = copysign(1.0, velocity) * (ahead - job.target)
@@ -494,6 +496,7 @@ class PtpGenerator:
         reached = self._nearest_reached(cycle, job, velocity)
         if reached is not None:
             reduced = self._job_in_motion(cycle, job.target, job.limits._replace(velocity=reached), job.ramp)
+            reduced = replace(reduced, through=job.through)
             wanted = replace(reduced, limits=job.limits._replace(velocity=velocity))
             self._begin(cycle, wanted, *self._table(cycle, reduced))
 

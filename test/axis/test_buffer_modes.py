@@ -448,6 +448,19 @@ def test_override_0_may_stop_the_axis_behind_the_first_target() -> None:
     assert_smooth(bench)
 
 
+def test_a_velocity_that_becomes_active_on_the_way_leaves_the_blending_alone() -> None:
+    bench = axis_bench()
+    bench.accepted("move_absolute", target=900.0, **DYNAMICS | {"velocity": SLOW})
+    bench.run(100)
+    bench.accepted("new_velocity_and_target", velocity=FAST, target=1000.0, activation_position=300.0)
+    bench.accepted("move_absolute", target=2000.0, buffer_mode="blending_low", **DYNAMICS | {"velocity": SLOW})
+    run_to_standstill(bench)
+    turn = start_of(bench, 3)
+    assert bench.column("set_velocity")[turn] == pytest.approx(SLOW, rel=1e-12)
+    assert max(bench.column("set_velocity")) == pytest.approx(FAST) and bench.column("set_position")[-1] == 2000.0
+    assert_smooth(bench)
+
+
 def test_a_motion_at_a_velocity_may_be_blended_behind_a_positioning() -> None:
     bench = axis_bench()
     bench.accepted("move_absolute", target=500.0, **DYNAMICS | {"velocity": SLOW})

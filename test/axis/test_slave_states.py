@@ -143,7 +143,7 @@ REFUSALS: Texts = {
     ),
     **refused(23005, ("move_superimposed",), (*IN_ERROR, "stopping_pseudo_master"), "the axis is in {state}"),
     **refused(23015, ("move_superimposed",), ("compensating_slave",), "a position compensation is active"),
-    **refused(23071, ("set_position",), MASTERS, "the axis is the master of z; decouple first"),
+    **refused(23071, ("set_position",), (*FREE, *IN_ERROR), "the axis is the master of z; decouple first"),
     **refused(
         23005,
         MOVES,

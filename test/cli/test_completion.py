@@ -45,6 +45,9 @@ def test_commands_and_arguments_of_a_unit():
         "move_absolute",
         "move_relative",
         "move_modulo",
+        "move_additive",
+        "move_velocity",
+        "move_superimposed",
     ]
     assert "orient" in completed("do", "--machine", MILL, "s")
     assert completed("do", "--machine", MILL, "x", "move_absolute") == [
@@ -53,6 +56,7 @@ def test_commands_and_arguments_of_a_unit():
         "acceleration=",
         "deceleration=",
         "jerk=",
+        "buffer_mode=",
     ]
     assert completed("do", "--machine", MILL, "x", "move_absolute", "target=1", incomplete="v") == ["velocity="]
     assert "target=" not in completed("do", "--machine", MILL, "x", "move_absolute", "target=1")

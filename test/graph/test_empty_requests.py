@@ -22,6 +22,10 @@ REFUSED = {
     ("axis", "move_absolute"): "argument 'target' is missing",
     ("axis", "move_relative"): "argument 'distance' is missing",
     ("axis", "move_modulo"): "argument 'position' is missing",
+    ("axis", "move_additive"): "argument 'distance' is missing",
+    ("axis", "move_velocity"): "argument 'velocity' is missing",
+    ("axis", "move_superimposed"): "argument 'distance' is missing",
+    ("axis", "set_position"): "argument 'position' is missing",
     ("axis", "set_override_type"): "type = 0 is not one of 1, 2, 3, 4",
     ("axis", "new_target"): "argument 'target' is missing",
     ("axis", "new_velocity_and_target"): "argument 'target' is missing",
@@ -61,7 +65,8 @@ WHOLE_TEXT = {
 MEANT = {
     "axis": {
         "power", "reset", "set_override", "stop", "halt", "home", "emergency_stop", "compensation_stop",
-        "external_disable", "set_feedforward", "reset_feedforward", "set_friction_compensation", "set_feed_release",
+        "halt_superimposed", "external_disable", "set_feedforward", "reset_feedforward", "set_friction_compensation",
+        "set_feed_release",
     },
     "spindle": {
         "power", "stop", "home", "set_override", "suppress_override", "reset_limits", "stop_at_program_end", "reset",
@@ -112,6 +117,10 @@ def test_an_empty_request(kind, command):
             {"master": "x", "slave_offset": 0.0, "slave_scaling": 2.0},
             {"master": "x", "cyclic": False, "master_offset": 0.0, "slave_offset": 0.0, "slave_scaling": 2.0},
         ),
+        ("move_absolute", {"target": 5.0}, {"target": 5.0}),
+        ("move_absolute", {"target": 5.0, "buffer_mode": "buffered"}, {"target": 5.0, "buffer_mode": "buffered"}),
+        ("move_superimposed", {"distance": 5.0}, {"distance": 5.0}),
+        ("set_position", {"position": 0.0}, {"position": 0.0, "relative": False}),
         ("external_enable", {"mode": "absolute"}, {"mode": "absolute"}),
         ("external_enable", {"mode": "absolute", "target": 0.0}, {"mode": "absolute", "target": 0.0}),
         ("set_cyclic_factor", {"factor": 0.0}, {"factor": 0.0}),

@@ -14,6 +14,7 @@ from cnc_ptp.protocol.commands import COMMANDS, OF_CHANNELS
 NAN = math.nan
 QUICK = {"velocity": 2000.0, "acceleration": 5000.0, "deceleration": 5000.0, "jerk": 50_000.0}
 FROM_THE_AXIS = dict.fromkeys(QUICK, NAN)
+ONLY_RAMPS = dict.fromkeys(("acceleration", "deceleration", "jerk"), NAN)
 COMPENSATING, EXTERNAL, HAS_JOB, STOPPED, IN_TARGET = 1 << 13, 1 << 14, 1 << 8, 1 << 7, 1 << 4
 
 
@@ -69,6 +70,26 @@ def test_starts(client):
         position=90.0,
         **FROM_THE_AXIS,
     )
+
+
+def test_motions_of_plcopen(client):
+    """Buffered, aborting, at a velocity, superimposed, other coordinates: each by its service, with the number of its job."""
+    first = client.call("x", "move_absolute", target=4000.0, **QUICK)
+    second = client.call("x", "move_relative", distance=100.0, buffer_mode="buffered", **FROM_THE_AXIS)
+    assert second.accepted and second.job == first.job + 1
+    assert client.call("x", "move_velocity", velocity=5.0, buffer_mode="buffered", **ONLY_RAMPS).error_id == 23063
+    client.done("x", "move_superimposed", distance=50.0, velocity_difference=0.0, **ONLY_RAMPS)
+    stands_at(client, "x", 4150.0)
+    client.done("x", "move_velocity", velocity=-2000.0, buffer_mode="", **ONLY_RAMPS)
+    client.wait_last("x", lambda block: block.set_velocity[-1] == -2000.0, "the velocity")
+    client.done("x", "move_absolute", target=0.0, buffer_mode="aborting", **QUICK)
+    stands_at(client, "x", 0.0)
+    client.done("x", "set_position", position=7.0, relative=True)
+    client.done("x", "move_additive", distance=-7.0, **FROM_THE_AXIS)
+    stands_at(client, "x", 0.0)
+    client.done("x", "set_position", position=-7.0, relative=True)
+    client.done("x", "move_absolute", target=0.0, **FROM_THE_AXIS)
+    stands_at(client, "x", 0.0)
 
 
 def test_new_target_and_new_velocity(client):

@@ -42,7 +42,18 @@ def test_no_field_has_a_name_that_yaml_takes_for_something_else(kind, command, s
             assert yaml.safe_load(name) == name and name not in ("y", "n", "Y", "N")
 
 
-MOVES = ["move_absolute", "move_relative", "move_modulo", "new_target", "new_velocity_and_target", "orient"]
+MOVES = [
+    "move_absolute",
+    "move_relative",
+    "move_modulo",
+    "move_additive",
+    "move_velocity",
+    "move_superimposed",
+    "set_position",
+    "new_target",
+    "new_velocity_and_target",
+    "orient",
+]
 
 
 @pytest.mark.parametrize(("kind", "command", "service"), [row for row in ALL if row[1] in MOVES])
@@ -51,6 +62,7 @@ def test_an_empty_request_has_no_target(kind, command, service) -> None:  # type
     given = given_arguments(COMMANDS[kind][command], service.Request())
     needed = {name for name, argument in COMMANDS[kind][command].items() if argument.required}
     assert not needed & {"target", "distance", "position", "position_deg"} & given.keys()
+    assert command != "move_velocity" or not given
 
 
 @pytest.mark.parametrize("command", ["feed_hold", "single_block", "optional_stop"])

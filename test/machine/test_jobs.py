@@ -191,3 +191,16 @@ def test_jobs_alone() -> None:
         JobEvent(2, FAILED, 9, 42),
     ]  # fmt: skip
     assert jobs.take_events() == [] and jobs.active == 0
+
+
+def test_a_superimposed_job_is_active_beside_the_other() -> None:
+    jobs = Jobs()
+    assert (jobs.begin(5), jobs.begin_superimposed(6), jobs.begin_superimposed(7)) == (1, 2, 3)
+    assert (jobs.active, jobs.superimposed) == (1, 3)
+    jobs.end(8, DONE)
+    jobs.end_superimposed(9, FAILED, 42)
+    jobs.end_superimposed(9, DONE)
+    assert jobs.take_events() == [
+        JobEvent(1, ACTIVE, 5), JobEvent(2, ACTIVE, 6), JobEvent(2, ABORTED, 7), JobEvent(3, ACTIVE, 7),
+        JobEvent(1, DONE, 8), JobEvent(3, FAILED, 9, 42),
+    ]  # fmt: skip
