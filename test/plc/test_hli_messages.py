@@ -127,8 +127,9 @@ def test_the_first_plc_holds_the_object_and_the_second_is_refused_by_name() -> N
     for _ in range(3):
         assert not x.take("p2", override=80.0)
     assert x.block() == [("override", 50.0, "p1")]
-    text = "plc: HLI of x: 'p2' commands it too and is refused while 'p1' holds it; nothing was changed"
-    assert x.told == [(26162, text)]
+    assert x.told == [
+        (26162, "plc: HLI of x: 'p2' commands it too and is refused while 'p1' holds it; nothing was changed")
+    ]
     x.take("p3")  # serves nothing, commands nothing
     x.take("p2", valid=False, override=1.0)
     assert len(x.told) == 1 and x.control.holder == "p1"

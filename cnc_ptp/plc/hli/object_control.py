@@ -281,7 +281,7 @@ class ObjectControl:
         return f"plc: HLI of {self.name}: {text}"
 
     def _tell_once(self, number: int, what: str, text: str) -> None:
-        """Until it is over: messages may come at 1 kHz."""
+        """Once while it lasts: messages may come at 1 kHz."""
         if (number, what) not in self._told:
             if len(self._told) >= MOST_SOURCES:
                 self._told.clear()
