@@ -39,6 +39,8 @@ from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.start_options import start_options, take_start
 
 LIFE_SIGN_LOST = 26103
+INPUT_PERIOD = 0.005
+"""Seconds between two looks for values of a PLC in free run."""
 
 
 class PlcBridgeNode(UnitNode):
@@ -82,6 +84,7 @@ class PlcBridgeNode(UnitNode):
             largest_overrides=largest_overrides(machine),
             timeout=self._life_sign_timeout,
         )
+        self.input_period = INPUT_PERIOD if self._free_run else 0.0
         self._jogs = JogTopics(self._warn)
         self._joints_due = 0
         self._answers: CouplingServices | None = None
@@ -106,7 +109,7 @@ class PlcBridgeNode(UnitNode):
         series = {"external_setpoint": self._on_external_setpoint, "jog": self._on_jog}
         topic = plc_topic(unit, name)
         if name in VALUE_TOPICS:
-            self.poll(VALUE_TOPICS[name], topic, self._values.receiver(unit, name), PLC_INPUT)
+            self.poll_input(VALUE_TOPICS[name], topic, self._values.receiver(unit, name), PLC_INPUT)
         elif name in series:
             message_type = PLC_TOPICS[self._kinds[unit]][name]
             self.create_subscription(message_type, topic, partial(series[name], unit), plc_quality(message_type))

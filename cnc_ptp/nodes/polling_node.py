@@ -6,44 +6,62 @@ for each one, saves most of what a block costs it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import time
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
 
+Received = Callable[[bytes], None]
+
 
 class PollingNode(Node):
     """A node that keeps some subscriptions from its executor."""
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
-        self._polled: dict[Subscription[Any], Callable[[bytes], None]] = {}
+        self._polled: dict[Subscription[Any], Received] = {}
+        self._inputs_polled: dict[Subscription[Any], Received] = {}
+        self._inputs_due = 0.0
+        self.input_period = 0.0
+        """Seconds between two looks for inputs; 0: at each look."""
         super().__init__(*arguments, **options)
 
-    def poll(
-        self, message_type: Any, topic: str, received: Callable[[bytes], None], quality: QoSProfile
-    ) -> Subscription[Any]:
+    def poll(self, message_type: Any, topic: str, received: Received, quality: QoSProfile) -> Subscription[Any]:
         """A subscription whose messages come as bytes when `take_polled` is called."""
         subscription = self.create_subscription(message_type, topic, received, quality, raw=True)
         self._polled[subscription] = received
         return subscription
 
+    def poll_input(self, message_type: Any, topic: str, received: Received, quality: QoSProfile) -> None:
+        """As `poll`, for what people and other machines write: in free run, looks come faster than they do."""
+        subscription = self.create_subscription(message_type, topic, received, quality, raw=True)
+        self._inputs_polled[subscription] = received
+
     @property
     def subscriptions(self) -> Iterator[Subscription[Any]]:
         """As Node has it, for executors: those that wake the node."""
-        return (subscription for subscription in super().subscriptions if subscription not in self._polled)
+        polled = self._polled, self._inputs_polled
+        return (each for each in super().subscriptions if not any(each in of_kind for of_kind in polled))
 
     def take_polled(self) -> None:
         """Calls back for every message that has come, topic by topic, oldest first."""
-        for subscription, received in self._polled.items():
-            handle: Any = subscription.handle
-            while True:
-                with handle:
-                    taken = handle.take_message(subscription.msg_type, True)
-                if taken is None:
-                    break
-                received(taken[0])
+        take_all(self._polled)
+        if self._inputs_polled and (now := time.monotonic()) >= self._inputs_due:
+            self._inputs_due = now + self.input_period
+            take_all(self._inputs_polled)
+
+
+def take_all(polled: Mapping[Subscription[Any], Received]) -> None:
+    for subscription, received in polled.items():
+        handle: Any = subscription.handle
+        while True:
+            with handle:
+                taken = handle.take_message(subscription.msg_type, True)
+            if taken is None:
+                break
+            received(taken[0])
 
 
 def chain(decode: Callable[[bytes], Any], take: Callable[[Any], None]) -> Callable[[bytes], None]:

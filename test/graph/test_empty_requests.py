@@ -3,12 +3,13 @@
 import pytest
 import rclpy
 from graph_support import MILL, PTP
+from rclpy.serialization import serialize_message
 
 from cnc_ptp import action, msg, srv
 from cnc_ptp.machine.wiring import build_unit
 from cnc_ptp.nodes import process
 from cnc_ptp.nodes.plc_bridge import PlcBridgeNode
-from cnc_ptp.nodes.topics import COUPLING_SERVICES, SERVICES
+from cnc_ptp.nodes.topics import COUPLING_SERVICES, HLI_CONTROL, SERVICES
 from cnc_ptp.nodes.unit.requests import given_arguments, objection
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import Command, CycleTick
@@ -66,14 +67,14 @@ MEANT = {
     "axis": {
         "power", "reset", "set_override", "stop", "halt", "home", "emergency_stop", "compensation_stop",
         "halt_superimposed", "external_disable", "set_feedforward", "reset_feedforward", "set_friction_compensation",
-        "set_feed_release",
+        "set_feed_release", "feed_hold",
     },
     "spindle": {
         "power", "stop", "home", "set_override", "suppress_override", "reset_limits", "stop_at_program_end", "reset",
-        "set_feedforward", "reset_feedforward",
+        "set_feedforward", "reset_feedforward", "feed_hold",
     },
     "channel": {"feed_hold", "set_override", "single_block", "optional_stop", "block_skip", "reset"},
-    "plc": {"auto_acknowledge", "set_life_sign", "stop_all"},
+    "plc": {"auto_acknowledge", "set_life_sign", "emergency_stop", "reset", "stop_all"},
 }  # fmt: skip
 """Accepted: their names say all, or what is left out holds back or switches off."""
 
@@ -148,7 +149,9 @@ def test_an_empty_goal_has_no_target(goal, kind, command):
     assert given_arguments(COMMANDS[kind][command], goal.Goal()) == {}
 
 
-@pytest.mark.parametrize("message", [msg.Switch, msg.Override, msg.CyclicCouplingFactor, msg.ExternalSetpoint])
+@pytest.mark.parametrize(
+    "message", [msg.Switch, msg.Override, msg.CyclicCouplingFactor, msg.ExternalSetpoint, *HLI_CONTROL.values()]
+)
 def test_an_empty_message_is_not_valid(message):
     assert message().valid is False
 
@@ -170,13 +173,18 @@ def bridge():
         ("/channel/feed_hold", msg.Switch(valid=True, enabled=True), ("feed_hold", {"enabled": False})),
         ("/x/enable", msg.Switch(valid=True, enabled=False), ("power", {"enabled": True})),
         ("/s/enable", msg.Switch(valid=True, enabled=False), ("power", {"enabled": True})),
+        (
+            "/x/hli/control",
+            msg.AxisHliControl(valid=True, feed_hold=msg.HliSwitch(enable_w=True, command_w=True)),
+            ("overlay", {"control_unit": "feed_hold", "enabled": False}),
+        ),
     ],
 )
 def test_an_empty_message_gives_back_only_what_was_served(bridge, topic, served, released):
-    (received,) = [each.callback for each in bridge.subscriptions if each.topic_name == topic]
+    (received,) = [take for each, take in bridge._inputs_polled.items() if each.topic_name == topic]
 
     def heard(message):
-        received(message)
+        received(serialize_message(message))
         return [(each.command, each.arguments) for each in bridge.unit.step(CycleTick(0, 10), {}).commands]
 
     assert heard(type(served)()) == []

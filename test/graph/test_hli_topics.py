@@ -5,6 +5,7 @@ All tests share one run; its recording, which no script has played, is verified 
 
 import signal
 import time
+from pathlib import Path
 
 import pytest
 import rclpy
@@ -185,6 +186,28 @@ def test_the_life_sign_of_the_plc_holds_what_it_serves(plc):
     plc.sees("channel", lambda status: not status.feed_hold.state_r, "its end")
     plc.done("channel", "feed_hold", enabled=False)
     plc.say("channel", valid=False)
+
+
+def test_the_plc_of_ten_lines_of_the_document(plc):
+    """As it stands in docs/plc_hli.md, with a door."""
+    page = (Path(__file__).parents[2] / "docs" / "plc_hli.md").read_text(encoding="utf-8")
+    lines = page.partition("    import rclpy\n")[2].splitlines()
+    code = "\n".join(line[4:] for line in lines if not line.startswith(("    rclpy.init", "    rclpy.spin")))
+    door = {"open": True}
+    names = {"rclpy": rclpy, "door_is_open": lambda: door["open"]}
+    exec(compile(code, "docs/plc_hli.md", "exec"), names)
+    try:
+        for is_open in (True, False):
+            door["open"] = is_open
+            deadline = time.monotonic() + 30.0
+            while plc.status["channel"][-1].feed_hold.state_r != is_open and time.monotonic() < deadline:
+                names["cycle"]()
+                plc.executor_of_test.spin_once(timeout_sec=0.01)
+            assert (plc.status["channel"][-1].holder, plc.status["channel"][-1].feed_hold.state_r) == ("door", is_open)
+    finally:
+        names["node"].destroy_node()
+    plc.sees("channel", lambda status: not status.held, "its silence")
+    plc.say("channel", "door", valid=False)
 
 
 def test_four_topics_at_1_khz_make_one_command_a_block_and_the_newest_value_wins(plc):

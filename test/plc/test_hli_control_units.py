@@ -143,6 +143,17 @@ def test_a_feed_hold_of_an_axis_stops_its_motion_and_lets_it_go_on() -> None:
     assert bench.bench.last.set_position[-1] == 1000.0
 
 
+def test_a_feed_hold_of_an_axis_on_a_path_holds_the_path() -> None:
+    bench = MachineBench("%P\nG01 X20 Y20 F3000\nM30", end_when_idle=False).run(0.2)
+    assert bench.give("x", "feed_hold", enabled=True).accepted
+    bench.run(1.0)
+    held = bench.position("x")
+    assert 0.0 < held < 20.0 and bench.last("channel").state[-1] == C.HOLD
+    bench.give("x", "feed_hold", enabled=False)
+    bench.run(2.0)
+    assert bench.position("x") == bench.position("y") == 20.0
+
+
 def test_a_feed_hold_of_a_spindle_stops_it_and_lets_it_turn_again_with_g167_too() -> None:
     bench = HliBench("spindle")
     bench.bench.accepted("start", direction="cw", speed_rpm=600.0)

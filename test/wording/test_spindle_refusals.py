@@ -12,7 +12,8 @@ from spindle_support import bench_of, two_gears
 Ask = Callable[[], UnitBench]
 SPINDLES = ("s", "t", "u")
 KNOWN = (
-    "couple, decouple, gear_changed, home, orient, power, reset, reset_feedforward, reset_limits, select_gear, "
+    "couple, decouple, feed_hold, gear_changed, home, orient, overlay, power, reset, reset_feedforward, reset_limits, "
+    "select_gear, "
     "set_feedforward, set_limits, set_override, set_speed, start, stop, stop_at_program_end, suppress_override"
 )
 SENSORLESS = {"feedback": "SPEED", "open_loop": True, "referenced_at_start": False}

@@ -84,6 +84,8 @@ class ObjectControl:
         self._told: set[tuple[int, str]] = set()
         self._changed = False
         """What it has commanded last no longer holds, so that the same message counts again."""
+        self._news = False
+        """A message has come since the last block."""
 
     # messages
 
@@ -92,6 +94,7 @@ class ObjectControl:
         source = message.source
         if not self._in_sequence(message):
             return False
+        self._news = True
         if not message.valid:
             self._leave(source)
             return False
@@ -230,13 +233,16 @@ class ObjectControl:
         if not self._serves("feed_hold"):
             return False
         self._wanted["feed_hold"] = 1.0, self._wanted["feed_hold"][1]
-        self._changed = True
+        self._changed = self._news = True
         return True
 
     # blocks
 
     def commands(self) -> Iterator[Command]:
         """The commands for the next block."""
+        if not self._news:
+            return
+        self._news = False
         for unit in CONTROL_UNITS[self.kind]:
             wanted, sent = self._wanted.get(unit.name), self._sent.get(unit.name)
             if unit.name in self._rising:

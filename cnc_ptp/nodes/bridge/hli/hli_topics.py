@@ -61,7 +61,7 @@ class HliTopics:
         }
         for name, control in hli.objects.items():
             topic = ControlTopic(control, readers[control.kind])
-            node.poll(HLI_CONTROL[control.kind], hli_control_topic(name), topic.receive, PLC_INPUT)
+            node.poll_input(HLI_CONTROL[control.kind], hli_control_topic(name), topic.receive, PLC_INPUT)
             status_type = HLI_STATUS[control.kind]
             self._publishers[name] = node.create_publisher(status_type, hli_status_topic(name), PLC_INPUT)
 
