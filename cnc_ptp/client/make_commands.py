@@ -58,6 +58,7 @@ def module(kind: str) -> str:
         *imports(kind),
         f"from cnc_ptp.client.asking import {', '.join(sorted({'Asking', *rows(kind)}))}",
         f"from cnc_ptp.client.job import {', '.join(names)}",
+        *aliases(kind),
         "",
         "",
         f"class {kind.capitalize()}Commands(Asking):",
@@ -97,6 +98,39 @@ def arguments_of(kind: str, command: str) -> dict[str, Argument]:
     return {name: known[name] for name in sorted(known, key=lambda name: (name not in must, name != "master"))}
 
 
+def aliases(kind: str) -> Iterator[str]:
+    """Types of arguments with choices that several commands share."""
+    shared = {name: argument for name, argument in choices_of(kind) if is_shared(kind, name, argument)}
+    yield from [""] if shared else []
+    for name, argument in shared.items():
+        yield f"{alias(name)} = {literal(argument)}"
+
+
+def choices_of(kind: str) -> list[tuple[str, Argument]]:
+    """Arguments with choices, of all commands."""
+    every = [pair for command in commands_of(kind) for pair in COMMANDS[kind][command].items()]
+    return [(name, argument) for name, argument in every if argument.choices]
+
+
+def is_shared(kind: str, name: str, argument: Argument) -> bool:
+    return [(each, other.choices) for each, other in choices_of(kind)].count((name, argument.choices)) > 1
+
+
+def alias(name: str) -> str:
+    return name.title().replace("_", "")
+
+
+def literal(argument: Argument) -> str:
+    chosen = ", ".join(f'"{choice}"' for choice in argument.choices)
+    return f"Literal[{chosen}]"
+
+
+def type_of(kind: str, name: str, argument: Argument) -> str:
+    if not argument.choices:
+        return TYPES[argument.kind]
+    return alias(name) if is_shared(kind, name, argument) else literal(argument)
+
+
 def is_needed(kind: str, command: str, name: str) -> bool:
     """It has no default."""
     has_default = (kind, command, name) in DEFAULTS or name in EITHER
@@ -125,9 +159,7 @@ def method(kind: str, command: str) -> Iterator[str]:
 
 
 def parameter(kind: str, command: str, name: str) -> str:
-    argument = COMMANDS[kind][command][name]
-    chosen = ", ".join(f'"{choice}"' for choice in argument.choices)
-    kind_of_value = f"Literal[{chosen}]" if chosen else TYPES[argument.kind]
+    kind_of_value = type_of(kind, name, COMMANDS[kind][command][name])
     if default := DEFAULTS.get((kind, command, name)):
         return f"{name}: {kind_of_value} = {default}"
     return f"{name}: {kind_of_value}" if is_needed(kind, command, name) else f"{name}: {kind_of_value} | None = None"

@@ -15,12 +15,14 @@ DISTANCES = (
     "following_error",
     "pitch_error",
     "lead",
+    "travel",
 )
 """`master_position` and `master_offset` have none: their axis is the master, and may be of the other kind."""
 VELOCITIES = (
     "velocity",
     "process_velocity",
     "velocity_increase",
+    "velocity_difference",
     "command_velocity",
     "feedforward_velocity",
     "additive_velocity",

@@ -321,7 +321,7 @@ def test_without_a_program() -> None:
     assert bench.refused("channel", "warm_up") == (
         "P-ERR-22002 channel channel: unknown command 'warm_up'; nothing was changed. Known: acknowledge, "
         "block_skip, feed_hold, load, "
-        "mdi, measuring_event, optional_stop, reset, set_clamp_position, set_override, "
+        "mdi, measuring_event, optional_stop, overlay, reset, set_clamp_position, set_override, "
         "set_zero_offset, single_block, start, teach_zero_offset"
     )
     assert bench.refused("channel", "acknowledge", id=1.5) == (
@@ -363,7 +363,7 @@ def test_vetoes_come_before_anything_moves_and_show_the_line(line: str, error: s
     bench = MachineBench(f"%P\nG01 X10 F3000\n{line}\nM30").run()
     column = {"120": 1, "220": line.index("S") + 1 if "S" in line else 5}[error[:3]]
     place = f"test.nc line 3 column {column} '{line}'"
-    assert bench.refusals()[0] == "P-ERR-" + error.format(place)
+    assert bench.refusals()[0] == f"P-ERR-{error.format(place)}; nothing was started"
     assert set(bench.column("x", "set_position")) == {0.0}
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 from machine_support import MILL, MachineBench, UnitBench
-from replay_support import replay
+from replay_support import replay, text_of
 
 from cnc_ptp.channel.program_check import ProgramCheck
 from cnc_ptp.cli import main
@@ -92,7 +92,7 @@ def test_a_run_with_a_dialect_is_the_same_in_a_replay() -> None:
     records = []
     for _ in range(150):
         outputs = offline.tick()
-        blocks.append({name: repr(output.block) for name, output in outputs.items()})
+        blocks.append({name: text_of(output.block) for name, output in outputs.items()})
         records += [record for output in outputs.values() for record in output.records]
     again = replay(MILL, records, len(blocks))
     for name in blocks[0].keys() - {"plc"}:

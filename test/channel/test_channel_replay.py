@@ -8,7 +8,7 @@ from channel_spindle_support import MVS_SLM, MVS_SLP, machine_of, three
 from machine_support import MILL, MachineBench
 from replay_support import bits, replay
 
-from cnc_ptp.parameters import MachineParameters, ToolLimits
+from cnc_ptp.parameters import MachineParameters, Tool, ToolLimits, ToolTable
 
 RANGES = ((50.0, 560.0), (400.0, 800.0), (700.0, 3500.0))
 FIRST = r"""%FIRST
@@ -47,7 +47,8 @@ def machine() -> MachineParameters:
         *spindles, units={"s": geared}, gear_change=True, tools={5: ToolLimits("s", None, 3000.0, 20000.0)}
     )
     first = both.channels["channel"]
-    one = replace(first, axes=first.axes[:1])
+    table = ToolTable({5: Tool(number=5)}, present=True)
+    one = replace(first, axes=first.axes[:1], tool_table=table)
     second = replace(first, name="second", axes=first.axes[1:2])
     return replace(both, channels={"channel": one, "second": second})
 

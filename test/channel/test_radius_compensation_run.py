@@ -117,6 +117,6 @@ def test_a_corner_that_is_too_small_refuses_the_start() -> None:
     (refusal,) = bench.refusals()
     assert refusal == (
         "P-ERR-90017 test.nc line 6 column 1 'G03 X36 Y4 R4': the tool with radius 5 mm is on the inside of an arc with"
-        " radius 4 mm: it does not fit into it"
+        " radius 4 mm: it does not fit into it; nothing was started"
     )
     assert bench.position("x") == pytest.approx(0.0)

@@ -119,7 +119,7 @@ def test_a_fault_in_the_first_block() -> None:
     effect = "nothing has moved and the program is aborted"
     assert bench.errors() == [f"P-ERR-21003 channel channel: test.nc line 2 {reason}; {effect}"]
     without_name = MachineBench("X1 Q\nM30", machine=streaming()).run()
-    assert without_name.refusals()[0] == f"P-ERR-21003 test.nc line 1 {reason}"
+    assert without_name.refusals()[0] == f"P-ERR-21003 test.nc line 1 {reason}; nothing was changed"
 
 
 def test_after_a_fault_and_reset_the_next_program_runs() -> None:

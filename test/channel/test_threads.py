@@ -442,7 +442,9 @@ def test_a_spindle_of_the_plc_that_is_too_fast():
 
 def refusal(text: str, machine=LATHE) -> str:
     bench = MachineBench(HEAD + text + "\nM30\n", machine=machine).run()
-    return next(f"{record.error_id} {record.message}" for record in bench.records if not record.accepted)
+    whole = next(f"{record.error_id} {record.message}" for record in bench.records if not record.accepted)
+    assert whole.endswith("; nothing was started")
+    return whole.removesuffix("; nothing was started")
 
 
 def test_what_is_refused_when_the_program_is_read():

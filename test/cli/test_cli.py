@@ -147,7 +147,7 @@ def test_bad_programs_are_refused_before_anything_starts(command, text, error, t
     path.write_text(text)
     result = call(command, MILL, "--program", path)
     assert result.exit_code == 2
-    assert result.stderr.splitlines()[0] == error.format(file=path)
+    assert result.stderr.splitlines()[0] == f"{error.format(file=path)}; nothing has moved"
     assert result.stderr.splitlines()[1] == text.splitlines()[1]
     assert result.stderr.splitlines()[2].strip() == "^"
 
@@ -267,7 +267,7 @@ def test_a_refusal_is_told_once(tmp_path):
     path.write_text("- {at: 0, to: channel, do: mdi, text: G77}\n- {at: 0.1, to: y, do: stop}\n")
     result = call("simulate", MILL, "--scenario", path)
     assert [line for line in result.output.splitlines() if "largest" not in line and "time" not in line] == [
-        "refused: P-ERR-20131 mdi line 1 column 1 'G77': unknown G function G77",
+        "refused: P-ERR-20131 mdi line 1 column 1 'G77': unknown G function G77; nothing was executed",
         "warning: axis y: stop without effect in Standstill",
         "1 command was refused",
     ]
@@ -377,7 +377,7 @@ def test_the_program_time_of_each_channel(tmp_path):
 
 
 def test_a_run_without_anything_to_do_says_so(program, tmp_path):
-    note = "note: there was nothing to do, give --program, --scenario or --duration"
+    note = "note: there was nothing to do, give --program, --scenario, --plc or --duration"
     result = call("simulate", MILL)
     assert (result.exit_code, result.stdout.splitlines()[-1]) == (0, note)
     (tmp_path / "s.yaml").write_text("[]")

@@ -82,7 +82,7 @@ def test_a_graph_without_anything_to_do_says_so(duration, told, capsys, monkeypa
     monkeypatch.setattr(command, "Supervisor", lambda *_, **__: supervisor)
     assert command.run(str(PTP), None, None, duration, None, free_run=True, composed=False) == 0
     last = capsys.readouterr().out.splitlines()[-1]
-    assert (last == "note: there was nothing to do, give --program, --scenario, --duration or --stay") is told
+    assert (last == "note: there was nothing to do, give --program, --scenario, --plc, --duration or --stay") is told
 
 
 def test_a_terminal_sees_each_note_as_it_comes_once(capsys, monkeypatch):

@@ -128,7 +128,7 @@ def run_block(block: str, names: dict[str, object]) -> None:
         if waits is not None:
             asyncio.run(waits)
     except CncError as error:
-        assert error.number == 26164
+        assert error.number == 26174
 
 
 def test_a_typed_program_passes_mypy(tmp_path: Path) -> None:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import inspect
+from importlib import import_module
+from typing import Literal, get_args, get_origin
 
 import pytest
 
@@ -39,6 +41,14 @@ def expected(argument: Argument, default: object) -> str:
     return f"{kind} | None" if default is None else kind
 
 
+def written(annotation: str, module: str) -> str:
+    """An annotation with the choices that its alias stands for."""
+    name = annotation.partition(" ")[0]
+    alias = getattr(import_module(module), name, None)
+    choices = get_args(alias) if get_origin(alias) is Literal else ()
+    return annotation.replace(name, f"Literal[{', '.join(map(repr, choices))}]") if choices else annotation
+
+
 def test_there_are_methods_for_all_of_them() -> None:
     assert len(ROWS) > 65
 
@@ -53,7 +63,8 @@ def test_arguments_and_result_are_those_of_the_table(kind: str, command: str) ->
         must = argument.required and name not in FROM_FILES
         default = DEFAULTS.get((kind, command, name), inspect.Parameter.empty if must else None)
         parameter = signature.parameters[name]
-        assert (parameter.default, parameter.annotation) == (default, expected(argument, default)), name
+        annotation = written(parameter.annotation, method.__module__)
+        assert (parameter.default, annotation) == (default, expected(argument, default)), name
         assert f"\n        {name} " in method.__doc__
     result = {"Answer": Answer, "Job": Job, "ProgramJob": ProgramJob}[signature.return_annotation]
     assert issubclass(result, Job) == (command in JOBS[kind])

@@ -59,7 +59,7 @@ def test_head_without_a_key(tmp_path, key):
 
 
 def test_head_with_an_unknown_key(tmp_path):
-    keys = "title, caption, machine, axes, panels, program, kind, turns, over, points, errors"
+    keys = "title, caption, machine, axes, panels, program, plc, signals, kind, turns, over, points, errors"
     expected = f"'axis: x' in the head is not one of {': ..., '.join(keys.split(', '))}: ..."
     assert fault_of(written(tmp_path, {**HEAD, "axis": "x"})) == f"figure move.yaml: {expected}; no picture was drawn"
 

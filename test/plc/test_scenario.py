@@ -102,7 +102,7 @@ FAULTS = [
     (
         "- {at: 0, to: plc, do: fly}",
         "plc plc: unknown command 'fly'; nothing was changed. Known: acknowledge, auto_acknowledge, "
-        "emergency_stop, reset, serve, set_life_sign, stop_all",
+        "emergency_stop, reset, serve, set_input, set_life_sign, stop_all",
     ),
     (
         "- {at: 0, to: x, do: power, enabled: yes}",
@@ -122,7 +122,7 @@ FAULTS = [
     (
         "- {at: 0, to: x, do: move_absolute, taget: 5}",
         "axis x: move_absolute refused: unknown argument 'taget'; nothing was changed. Known: target, velocity, "
-        "acceleration, deceleration, jerk",
+        "acceleration, deceleration, jerk, buffer_mode",
     ),
     (
         "- {at: 0, to: s, do: stop, source: plcs}",
@@ -297,7 +297,7 @@ def test_faults_of_a_job(tmp_path: Path) -> None:
     for path, machine, text in (
         (bad, MILL, "P-ERR-120002 {} line 2 column 1 'G01 X1000 F3000': axis X: 1000 mm lies beyond the "
             "positive soft limit "
-         "300 mm (P-AXIS-00178)"),
+         "300 mm (P-AXIS-00178); nothing has moved"),
         (latin, MILL, "P-ERR-26110 NC program {} cannot be read: it is not UTF-8 text, byte 0xFC in line 2 column 2 ('ü' in Latin-1); "
          "save it as UTF-8; nothing was started"),
         (tmp_path / "no.nc", MILL, "P-ERR-26110 NC program {} cannot be read: No such file or directory; "

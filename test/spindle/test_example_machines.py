@@ -221,7 +221,7 @@ def test_third_spindle_is_unknown_to_the_second_channel() -> None:
     message = bench.refused("channel2", "start")
     assert message == (
         "P-ERR-20180 channel2_unknown.nc line 2 column 5 'N10 S3[M03 REV100]': spindle S3 does not belong to this channel; "
-        "its spindles are: S, S1"
+        "its spindles are: S, S1; nothing was started"
     )
 
 

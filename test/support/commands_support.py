@@ -25,6 +25,10 @@ OF_THE_BLOCK = (
     "probe_switched",
     "probe_cycle",
     "probe_position",
+    "job",
+    "job_events",
+    "answers",
+    "control_units",
 )
 
 

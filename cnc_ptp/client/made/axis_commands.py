@@ -7,6 +7,8 @@ from typing import Literal
 from cnc_ptp.client.asking import Asking, Rows
 from cnc_ptp.client.job import Answer, Job
 
+BufferMode = Literal["aborting", "buffered", "blending_low", "blending_previous", "blending_next", "blending_high"]
+
 
 class AxisCommands(Asking):
     """What an axis can be told. A refusal raises the error of the unit; nothing has changed then."""
@@ -30,6 +32,13 @@ class AxisCommands(Asking):
         """
         return self._answer("set_feed_release", forward=forward, backward=backward)
 
+    def feed_hold(self, enabled: bool) -> Answer:
+        """Stops positioning and path on their ramps, and resumes them.
+
+        enabled  on or off
+        """
+        return self._answer("feed_hold", enabled=enabled)
+
     def move_absolute(
         self,
         target: float,
@@ -38,6 +47,7 @@ class AxisCommands(Asking):
         acceleration: float | None = None,
         deceleration: float | None = None,
         jerk: float | None = None,
+        buffer_mode: BufferMode | None = None,
     ) -> Job:
         """Positioning to a target.
 
@@ -46,6 +56,8 @@ class AxisCommands(Asking):
         acceleration [mm/s², °/s²]  largest acceleration; left out: P-AXIS-00001
         deceleration [mm/s², °/s²]  largest deceleration; left out: P-AXIS-00002
         jerk [mm/s³, °/s³]  largest jerk; left out: P-AXIS-00001 / P-AXIS-00196
+        buffer_mode  how it follows an active motion ([ptp.md](ptp.md#buffer-modes)); left out: only from
+            Standstill
         """
         return self._job(
             "move_absolute",
@@ -54,6 +66,7 @@ class AxisCommands(Asking):
             acceleration=acceleration,
             deceleration=deceleration,
             jerk=jerk,
+            buffer_mode=buffer_mode,
         )
 
     def move_relative(
@@ -64,6 +77,7 @@ class AxisCommands(Asking):
         acceleration: float | None = None,
         deceleration: float | None = None,
         jerk: float | None = None,
+        buffer_mode: BufferMode | None = None,
     ) -> Job:
         """Positioning over a distance from the set position.
 
@@ -72,6 +86,8 @@ class AxisCommands(Asking):
         acceleration [mm/s², °/s²]  largest acceleration; left out: P-AXIS-00001
         deceleration [mm/s², °/s²]  largest deceleration; left out: P-AXIS-00002
         jerk [mm/s³, °/s³]  largest jerk; left out: P-AXIS-00001 / P-AXIS-00196
+        buffer_mode  how it follows an active motion ([ptp.md](ptp.md#buffer-modes)); left out: only from
+            Standstill
         """
         return self._job(
             "move_relative",
@@ -80,6 +96,7 @@ class AxisCommands(Asking):
             acceleration=acceleration,
             deceleration=deceleration,
             jerk=jerk,
+            buffer_mode=buffer_mode,
         )
 
     def move_modulo(
@@ -90,6 +107,7 @@ class AxisCommands(Asking):
         acceleration: float | None = None,
         deceleration: float | None = None,
         jerk: float | None = None,
+        buffer_mode: BufferMode | None = None,
     ) -> Job:
         """Positioning within a turn, modulo axes.
 
@@ -98,6 +116,8 @@ class AxisCommands(Asking):
         acceleration [mm/s², °/s²]  largest acceleration; left out: P-AXIS-00001
         deceleration [mm/s², °/s²]  largest deceleration; left out: P-AXIS-00002
         jerk [mm/s³, °/s³]  largest jerk; left out: P-AXIS-00001 / P-AXIS-00196
+        buffer_mode  how it follows an active motion ([ptp.md](ptp.md#buffer-modes)); left out: only from
+            Standstill
         """
         return self._job(
             "move_modulo",
@@ -106,7 +126,104 @@ class AxisCommands(Asking):
             acceleration=acceleration,
             deceleration=deceleration,
             jerk=jerk,
+            buffer_mode=buffer_mode,
         )
+
+    def move_additive(
+        self,
+        distance: float,
+        *,
+        velocity: float | None = None,
+        acceleration: float | None = None,
+        deceleration: float | None = None,
+        jerk: float | None = None,
+        buffer_mode: BufferMode | None = None,
+    ) -> Job:
+        """Positioning over a distance from the target of the last positioning.
+
+        distance [mm, °]  signed
+        velocity [mm/s, °/s]  largest velocity; left out: the smaller of P-AXIS-00212 and P-MACH-00008
+        acceleration [mm/s², °/s²]  largest acceleration; left out: P-AXIS-00001
+        deceleration [mm/s², °/s²]  largest deceleration; left out: P-AXIS-00002
+        jerk [mm/s³, °/s³]  largest jerk; left out: P-AXIS-00001 / P-AXIS-00196
+        buffer_mode  how it follows an active motion ([ptp.md](ptp.md#buffer-modes)); left out: only from
+            Standstill
+        """
+        return self._job(
+            "move_additive",
+            distance=distance,
+            velocity=velocity,
+            acceleration=acceleration,
+            deceleration=deceleration,
+            jerk=jerk,
+            buffer_mode=buffer_mode,
+        )
+
+    def move_velocity(
+        self,
+        velocity: float,
+        *,
+        acceleration: float | None = None,
+        deceleration: float | None = None,
+        jerk: float | None = None,
+        buffer_mode: BufferMode | None = None,
+    ) -> Job:
+        """Moves at a velocity until another motion comes.
+
+        velocity [mm/s, °/s]  sign = direction
+        acceleration [mm/s², °/s²]  largest acceleration; left out: P-AXIS-00001
+        deceleration [mm/s², °/s²]  largest deceleration; left out: P-AXIS-00002
+        jerk [mm/s³, °/s³]  largest jerk; left out: P-AXIS-00001 / P-AXIS-00196
+        buffer_mode  how it follows an active motion ([ptp.md](ptp.md#buffer-modes)); left out: only from
+            Standstill
+        """
+        return self._job(
+            "move_velocity",
+            velocity=velocity,
+            acceleration=acceleration,
+            deceleration=deceleration,
+            jerk=jerk,
+            buffer_mode=buffer_mode,
+        )
+
+    def move_superimposed(
+        self,
+        distance: float,
+        *,
+        velocity_difference: float | None = None,
+        acceleration: float | None = None,
+        deceleration: float | None = None,
+        jerk: float | None = None,
+    ) -> Job:
+        """Adds a distance to the basic motion.
+
+        distance [mm, °]  signed
+        velocity_difference [mm/s, °/s]  largest velocity of the addition; left out: what P-AXIS-00212 leaves
+            beside the basic motion
+        acceleration [mm/s², °/s²]  largest acceleration; left out: P-AXIS-00001
+        deceleration [mm/s², °/s²]  largest deceleration; left out: P-AXIS-00002
+        jerk [mm/s³, °/s³]  largest jerk; left out: P-AXIS-00001 / P-AXIS-00196
+        """
+        return self._job(
+            "move_superimposed",
+            distance=distance,
+            velocity_difference=velocity_difference,
+            acceleration=acceleration,
+            deceleration=deceleration,
+            jerk=jerk,
+        )
+
+    def halt_superimposed(self) -> Job:
+        """Ends the superimposed motion on its ramp."""
+        return self._job("halt_superimposed")
+
+    def set_position(self, position: float, *, relative: bool | None = None) -> Answer:
+        """Other coordinates for the axis, which does not move.
+
+        position [mm, °]  the actual position from now on
+        relative  `position` is a distance from the actual one; left out: off
+        """
+        return self._answer("set_position", position=position, relative=relative)
 
     def set_override(self, percent: float) -> Answer:
         """Override of PTP motion.
@@ -137,9 +254,12 @@ class AxisCommands(Asking):
         """
         return self._job("jog", velocity=velocity)
 
-    def home(self) -> Job:
-        """Homing (G74): reference cam, zero pulse."""
-        return self._job("home")
+    def home(self, *, position: float | None = None) -> Job:
+        """Homing (G74): reference cam, zero pulse; by the drive with P-AXIS-00299 = DRIVE_CONTROLLED.
+
+        position [mm, °]  position of the reference point; left out: P-AXIS-00152
+        """
+        return self._job("home", position=position)
 
     def emergency_stop(self, *, deceleration: float | None = None, jerk: float | None = None) -> Job:
         """Stops on a ramp of its own, never weaker than that of the start.
@@ -347,6 +467,14 @@ class AxisCommands(Asking):
         """
         return self._job("decouple", target=target, velocity=velocity)
 
+    def write_parameter(self, parameter: str, value: float) -> Answer:
+        """Changes a parameter until the end of the run.
+
+        parameter  P-AXIS-00236 or P-MACH-00014
+        value  in the unit of its list
+        """
+        return self._answer("write_parameter", parameter=parameter, value=value)
+
     def set_feedforward(self, *, enabled: bool | None = None, weight_percent: float | None = None) -> Answer:
         """Switches and weights feedforward.
 
@@ -365,3 +493,35 @@ class AxisCommands(Asking):
         enabled  on or off
         """
         return self._answer("set_friction_compensation", enabled=enabled)
+
+    def read_drive_parameter(self, idn: str) -> Answer:
+        """Reads a parameter of a SERCOS drive; the answer holds it.
+
+        idn  `S-0-` and four digits
+        """
+        return self._answer("read_drive_parameter", idn=idn)
+
+    def write_drive_parameter(self, idn: str, value: int) -> Answer:
+        """Writes a parameter of a SERCOS drive; S-0-0148 = 3 lets the drive home the axis.
+
+        idn  `S-0-` and four digits
+        value  in digits of the drive
+        """
+        return self._answer("write_drive_parameter", idn=idn, value=value)
+
+    def overlay(
+        self,
+        control_unit: str,
+        enabled: bool,
+        *,
+        value: float | None = None,
+        holder: str | None = None,
+    ) -> Answer:
+        """An external PLC serves a control unit, or gives it back ([plc_hli.md](plc_hli.md)).
+
+        control_unit  of the unit ([hli_objects.md](hli_objects.md))
+        enabled  on or off
+        value  switches 0 and 1, overrides in %; 1 has an edge carried out; left out: with `enabled` off only
+        holder  name of the PLC; left out: none
+        """
+        return self._answer("overlay", control_unit=control_unit, enabled=enabled, value=value, holder=holder)

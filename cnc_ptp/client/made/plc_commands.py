@@ -30,6 +30,33 @@ class PlcCommands(Asking):
         """
         return self._answer("set_life_sign", enabled=enabled)
 
+    def set_input(self, name: str, value: float) -> Answer:
+        """A value from outside for a [PLC in a file](plc.md#inputs).
+
+        name  of the input
+        value  a number; 1 is on, 0 is off
+        """
+        return self._answer("set_input", name=name, value=value)
+
+    def serve(self, unit: str, enabled: bool) -> Answer:
+        """An external PLC answers the functions of a channel, or the gear changes of a spindle.
+
+        unit  a channel or a spindle
+        enabled  on or off
+        """
+        return self._answer("serve", unit=unit, enabled=enabled)
+
+    def emergency_stop(self, enabled: bool) -> Answer:
+        """Everything stops at once and is locked until this is off and each unit was reset.
+
+        enabled  on or off
+        """
+        return self._answer("emergency_stop", enabled=enabled)
+
+    def reset(self) -> Answer:
+        """Resets each unit that is in error."""
+        return self._answer("reset")
+
     def stop_all(self) -> Answer:
         """Stops everything on its ramp."""
         return self._answer("stop_all")

@@ -80,6 +80,13 @@ class SpindleCommands(Asking):
         """
         return self._answer("suppress_override", enabled=enabled)
 
+    def feed_hold(self, enabled: bool) -> Answer:
+        """Stops the spindle on its ramp, and lets it turn again.
+
+        enabled  on or off
+        """
+        return self._answer("feed_hold", enabled=enabled)
+
     def select_gear(self, stage: int, *, resume: bool = True, source: str | None = None) -> Answer:
         """M40 … M45: requests a gear change.
 
@@ -152,3 +159,20 @@ class SpindleCommands(Asking):
     def reset(self) -> Answer:
         """Leaves ErrorStop at a standstill."""
         return self._answer("reset")
+
+    def overlay(
+        self,
+        control_unit: str,
+        enabled: bool,
+        *,
+        value: float | None = None,
+        holder: str | None = None,
+    ) -> Answer:
+        """An external PLC serves a control unit, or gives it back ([plc_hli.md](plc_hli.md)).
+
+        control_unit  of the unit ([hli_objects.md](hli_objects.md))
+        enabled  on or off
+        value  switches 0 and 1, overrides in %; 1 has an edge carried out; left out: with `enabled` off only
+        holder  name of the PLC; left out: none
+        """
+        return self._answer("overlay", control_unit=control_unit, enabled=enabled, value=value, holder=holder)

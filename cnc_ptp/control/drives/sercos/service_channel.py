@@ -100,7 +100,7 @@ class ServiceChannel:
         else:
             self.homing.cancel()
 
-    def check(self, idn: str, value: float) -> None:
+    def check(self, idn: str, value: int) -> None:
         """Raises the ServiceError with which the drive would refuse; changes nothing."""
         self._require_known(idn)
         low, high = IDNS[idn].low, IDNS[idn].high
@@ -117,7 +117,7 @@ class ServiceChannel:
         elif value > high:
             raise ServiceError(TOO_LARGE, f"{idn} = {value} is above its largest value {high}")
         if idn == idns.HOMING_PARAMETER:
-            self._check_homing_parameter(int(value))
+            self._check_homing_parameter(value)
 
     def _require_known(self, idn: str) -> None:
         if idn in IDNS:
@@ -126,7 +126,7 @@ class ServiceChannel:
             raise ServiceError(NO_IDN, f"'{idn}' is not S-0- and four digits")
         raise ServiceError(NO_IDN, f"the drive has no {idn}, it has {', '.join(IDNS)}")
 
-    def _check_procedure(self, value: float) -> None:
+    def _check_procedure(self, value: int) -> None:
         if value not in (0, idns.SET, idns.SET_AND_ENABLE):
             raise ServiceError(INVALID, f"{idns.HOMING} = {value} is not 0 (cancel), 1 (set) or 3 (set and enable)")
         if value and self.homing.phase is Phase.CANCELLED:
