@@ -18,6 +18,7 @@ from cnc_ptp.protocol.commands import COMMANDS
 UNITS = {"axis": (PTP, "y"), "spindle": (MILL, "s"), "channel": (MILL, "channel"), "plc": (MILL, "plc")}
 ALL = {kind: services | (COUPLING_SERVICES if kind == "axis" else {}) for kind, services in SERVICES.items()}
 NO_AXIS = "there is no axis ''. Known: x, z, c"
+NO_DRIVE = "the axis has no SERCOS drive (P-AXIS-00020), which has such parameters"
 NO_SLAVE = "the axis is not coupled (it is in Standstill)"
 REFUSED = {
     ("axis", "move_absolute"): "argument 'target' is missing",
@@ -35,6 +36,8 @@ REFUSED = {
     ("axis", "set_coupling_factor"): "argument 'factor' is missing",
     ("axis", "set_cyclic_factor"): "argument 'factor' is missing",
     ("axis", "decouple"): NO_SLAVE,
+    ("axis", "read_drive_parameter"): NO_DRIVE,
+    ("axis", "write_drive_parameter"): NO_DRIVE,
     ("axis", "couple"): NO_AXIS,
     ("axis", "couple_gantry"): NO_AXIS,
     ("axis", "couple_cyclic"): NO_AXIS,
@@ -60,7 +63,7 @@ REFUSED = {
 }
 """Reasons, in a unit at a standstill."""
 WHOLE_TEXT = {
-    ("channel", "mdi"): "mdi line 1 column 1 '': no main program",
+    ("channel", "mdi"): "mdi line 1 column 1 '': no main program; nothing was executed",
     ("plc", "acknowledge"): "plc plc: acknowledge refused: no request 0 waits; nothing was changed. Waiting: none",
 }
 MEANT = {
