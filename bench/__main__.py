@@ -29,6 +29,7 @@ TOPICS = (
     "offline",
     "graph",
     "service",
+    "plc",
     "client",
     "slaves",
     "spindles",
