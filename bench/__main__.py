@@ -24,6 +24,7 @@ TOPICS = (
     "control",
     "smoothing",
     "lookahead",
+    "paths",
     "streaming",
     "recording",
     "offline",

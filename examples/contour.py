@@ -9,7 +9,7 @@ from 0.02 to 0.5 mm: the surface has radii from 3 mm to nearly flat, the rings s
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import chain, islice
 from math import cos, exp, hypot, pi, sin, sqrt
 from pathlib import Path
@@ -73,26 +73,27 @@ def pocket(layers: int) -> Iterator[Point]:
 
 
 def points(blocks: int = BLOCKS) -> Iterator[Point]:
-    """The first `blocks` points of pocket and surface, rounded; none follows itself."""
+    """The first `blocks` points of pocket and surface."""
+    return islice(rounded(chain(pocket(6), surface(10**6))), blocks)
+
+
+def rounded(path: Iterable[Point]) -> Iterator[Point]:
+    """Points to 0.001 mm; none follows itself."""
     last = (0.0, 0.0, 0.0)
-    found = 0
-    for x, y, z in chain(pocket(6), surface(10**6)):
+    for x, y, z in path:
         point = (round(x, 3), round(y, 3), round(z, 3))
         if point != last:
             yield point
             last = point
-            found += 1
-        if found == blocks:
-            return
 
 
-def program(blocks: int = BLOCKS) -> Iterator[str]:
+def program(path: Iterable[Point]) -> Iterator[str]:
     """The lines: only the words that change, as CAM systems write them."""
     yield "%CONTOUR"
     yield "N10 G90 G17 G21"
     yield "N20 #HSC ON [BSPLINE PATH_DEV=0.005]"
     last: list[str] = ["", "", ""]
-    for number, point in enumerate(points(blocks)):
+    for number, point in enumerate(path):
         words = [f"{axis}{value:.3f}".rstrip("0").rstrip(".") for axis, value in zip("XYZ", point, strict=True)]
         changed = "".join(word for word, before in zip(words, last, strict=True) if word != before)
         yield f"G01 {changed} F6000" if number == 0 else changed
@@ -104,7 +105,7 @@ def program(blocks: int = BLOCKS) -> Iterator[str]:
 def main() -> None:
     blocks = int(sys.argv[2]) if len(sys.argv) > 2 else BLOCKS
     with Path(sys.argv[1]).open("w") as file:
-        file.writelines(f"{line}\n" for line in islice(program(blocks), blocks + 5))
+        file.writelines(f"{line}\n" for line in program(points(blocks)))
 
 
 if __name__ == "__main__":

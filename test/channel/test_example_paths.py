@@ -6,6 +6,8 @@ does not move. drill.nc is called by pocket.nc.
 
 from __future__ import annotations
 
+import runpy
+from itertools import chain, islice
 from pathlib import Path
 
 import pytest
@@ -44,6 +46,16 @@ CYCLES = {
 @pytest.mark.parametrize(("machine", "program"), PAIRS, ids=lambda name: Path(name).stem)
 def test_an_example_keeps_to_its_path_and_the_axes_to_their_limits(machine: str, program: str) -> None:
     assert findings(machine, program) == []
+
+
+@pytest.mark.parametrize("part", ["pocket", "surface"])
+def test_chords_of_a_cam_contour(part: str, tmp_path: Path) -> None:
+    """Parts of the 150,000 blocks of examples/contour.py: rings with round and sharp corners, rows over the hill."""
+    contour = runpy.run_path("examples/contour.py")
+    path = contour["pocket"](1) if part == "pocket" else chain(*(contour["row"](y, forward=True) for y in (38.0, 40.0)))
+    program = tmp_path / "contour.nc"
+    program.write_text("\n".join(contour["program"](islice(contour["rounded"](path), 1200))))
+    assert findings(MILL, str(program)) == []
 
 
 @pytest.mark.parametrize("code", CYCLES)

@@ -14,11 +14,13 @@ BLOCK = 0.01
 """s between commands."""
 LARGEST = 1.2
 """Largest override."""
+MOMENTS = 10
+"""Disturbances of a run."""
 LONGEST = 200.0
 """s of a run with all its standstills."""
 
 
-def disturbed(seed: int, kind: str, moments: int = 10) -> Findings:
+def disturbed(seed: int, kind: str, moments: int = MOMENTS) -> Findings:
     """A run with that many disturbances of a kind; checked whole, `reset` up to where it stops."""
     draw = random.Random(seed)
     program = RandomProgram(seed)
