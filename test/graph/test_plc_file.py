@@ -105,10 +105,10 @@ def test_a_plc_that_fails_stops_the_machine_on_its_ramps(tmp_path, fault, option
     output = run("run", PTP, "--plc", file, *options, "--record", recording, expect=1)
     recorded = verified(recording)
     (error,) = [event for event in recorded.events if event.severity == 2]
-    assert (error.cycle, error.line) == (600, 14)
+    assert (error.cycle, error.line) == (600, 13)
     number, reason = FAULTS[fault]
     assert error.error_id == number
-    assert error.text == (f"plc plc: plc.py:14 '{fault}': {reason}; everything is stopped and the run ends")
+    assert error.text == (f"plc plc: plc.py:13 '{fault}': {reason}; everything is stopped and the run ends")
     assert error.text in output.stderr
     x, y = (recorded.states[f"/{axis}/state"] for axis in ("x", "y"))
     assert x["set_velocity"][-1] == 0.0 and np.array_equal(x["set_position"], y["set_position"])
