@@ -36,9 +36,8 @@ class OverrideCommands:
             return None
         if axis.ptp.job is None and axis.ptp.finished(cycle):
             return None  # only a superimposed motion is left, which has no override
-        if axis.ptp.follows:
-            return f"axis {axis.name}: override {percent} % does not change the active motion (a trajectory keeps its times)"
         reason = "the axis stops" if axis.ptp.job is None else "brake phase or level out of reach"
+        reason = "a trajectory keeps its times" if axis.ptp.follows else reason
         return f"axis {axis.name}: override {percent} % does not change the active motion ({reason})"
 
     def do_set_override_type(self, cycle: int, *, type: int) -> None:

@@ -72,7 +72,7 @@ class TrajectoryChecks:
     def _from(self, points: list[TrajectoryPoint], now: float) -> list[TrajectoryPoint]:
         """With a first point at time 0, which is where the axis stands; without one the axis goes to the first point.
 
-        What rounding makes of that position is corrected, so that nothing jumps.
+        That point may be in the position window around it, and is moved there, so that nothing jumps.
         """
         axis, first = self._axis, points[0]
         rest = first._replace(
@@ -83,10 +83,10 @@ class TrajectoryChecks:
         )
         if first.time > 0.0:
             return [rest, *points]
-        if abs(first.position - now) > max(axis.parameters.encoder_increment, rounding(first.position, now)):
+        window = axis.parameters.position_window
+        if abs(first.position - now) > max(window, rounding(first.position, now)):
             where = f"the axis is at {now} {axis.unit}, the first point at 0 s is {first.position} {axis.unit}"
-            most = f"one encoder increment ({axis.parameters.encoder_increment} {axis.unit})"
-            self._bad(f"{where}; they may differ by {most}")
+            self._bad(f"{where}; they may differ by the position window {window} {axis.unit} (P-AXIS-00236)")
         if first.velocity:
             velocity = f"velocity {first.velocity} {axis.unit}/s"
             self._bad(f"{velocity} in the first point at 0 s; the axis is at a standstill")
@@ -155,7 +155,9 @@ class TrajectoryChecks:
             limit = self._axis.checks.soft_limit(direction)
             beyond = direction * (extremum.value - limit.position)
             if beyond > rounding(extremum.value, 0.0) and beyond > direction * (now - limit.position):
-                reason = f"position {extremum.value:g} {self._axis.unit} at {extremum.time:g} s is beyond the {limit.text}"
+                reason = (
+                    f"position {extremum.value:g} {self._axis.unit} at {extremum.time:g} s is beyond the {limit.text}"
+                )
                 values = {"position": extremum.value, "limit": limit.position, "time": extremum.time}
                 self._axis.refuse(BEGIN, limit.number, reason, **values)
 

@@ -194,7 +194,7 @@ class PlcUnit(Unit):
         goal_tolerance: Sequence[Any] = (),
         goal_time: float = 0.0,
     ) -> None:
-        """Axes follow a trajectory together: rows of time and the values of each; all of them or none begins.
+        """Axes follow a trajectory together: rows of time and lists of what each axis has; all of them or none begins.
 
         Refused (23064) when the rows do not fit the axes, or an axis follows another one; each axis checks its own
         values, and one that refuses or fails stops the others.

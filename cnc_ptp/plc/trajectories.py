@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 from cnc_ptp.axis.faults import BAD_TRAJECTORY
@@ -14,6 +14,7 @@ from cnc_ptp.protocol.unit import PLC
 
 FOLLOW, BEGIN = "follow_trajectory", "begin_trajectory"
 """What the PLC is told, and what it tells each axis."""
+QUANTITIES = ("positions", "velocities", "accelerations")
 
 
 @dataclass
@@ -51,7 +52,6 @@ class FollowedTrajectory:
     sent: bool = False
     lost: str = ""
     """An axis that tells nothing any more."""
-    rows: list[Sequence[float]] = field(default_factory=list)
 
     @property
     def over(self) -> bool:
@@ -111,7 +111,7 @@ class Trajectories:
             path, goal = tolerances[0][index], tolerances[1][index]
             values = {"path_tolerance": path, "goal_tolerance": goal, "goal_time": goal_time}
             members[axis] = Member(Command(axis, BEGIN, {"points": columns[index], **values, "delay": 0.0}))
-        trajectory = FollowedTrajectory(members, rows=list(points))
+        trajectory = FollowedTrajectory(members)
         self._active.append(trajectory)
         return trajectory
 
@@ -143,13 +143,18 @@ class Trajectories:
 
 
 def column(axes: Sequence[str], points: Sequence[Any], index: int) -> list[list[Any]]:
-    """The points of one axis: time, position, velocity, acceleration. Raises 23064 for rows of another length."""
-    count, rows = len(axes), []
+    """The points of one axis: time, position, velocity, acceleration. Raises 23064 for points of another form."""
+    rows = []
     for number, row in enumerate(points, 1):
-        if not isinstance(row, (list, tuple)) or len(row) not in (1 + count, 1 + 2 * count, 1 + 3 * count):
-            names = f"time, positions, velocities, accelerations of {', '.join(axes)}"
-            raise refusal(f"point {number} = {row!r} is not a list of {names} (the last two may be left out)")
-        rows.append([row[0], *row[1 + index :: count]])
+        if not isinstance(row, (list, tuple)) or not 2 <= len(row) <= 1 + len(QUANTITIES):
+            names = f"time, {', '.join(QUANTITIES)} (the last two may be left out)"
+            raise refusal(f"point {number} = {row!r} is not a list of {names}")
+        for name, values in zip(QUANTITIES, row[1:], strict=False):
+            if not isinstance(values, (list, tuple)) or len(values) != len(axes):
+                raise refusal(
+                    f"{name} of point {number} = {values!r} is not a list of one value of {', '.join(axes)} each"
+                )
+        rows.append([row[0], *[values[index] for values in row[1:]]])
     if not rows:
         raise refusal("points is empty")
     return rows
