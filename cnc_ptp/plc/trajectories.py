@@ -151,9 +151,7 @@ def column(axes: Sequence[str], points: Sequence[Any], index: int) -> list[list[
             raise refusal(f"point {number} = {row!r} is not a list of {names}")
         for name, values in zip(QUANTITIES, row[1:], strict=False):
             if not isinstance(values, (list, tuple)) or len(values) != len(axes):
-                raise refusal(
-                    f"{name} of point {number} = {values!r} is not a list of one value of {', '.join(axes)} each"
-                )
+                raise refusal(f"{name} of point {number} = {values!r} has not one value of each of {', '.join(axes)}")
         rows.append([row[0], *[values[index] for values in row[1:]]])
     if not rows:
         raise refusal("points is empty")

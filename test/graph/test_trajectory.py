@@ -139,7 +139,9 @@ def test_a_path_tolerance_stops_all_axes(client):
     goal = [(2.0, [now[0] + 0.2, now[1] + 0.01], [0.0, 0.0])]
     result = client.result(client.follow(["x", "z"], goal, path_tolerance=[1e-4, 1e-2]))
     assert (result.success, result.error_code, result.error_id) == (False, Result.PATH_TOLERANCE_VIOLATED, 23065)
-    assert result.error_string.startswith("axis x: 0.1") and "more than the path tolerance 0.1 mm" in result.error_string
+    assert (
+        result.error_string.startswith("axis x: 0.1") and "more than the path tolerance 0.1 mm" in result.error_string
+    )
     client.at_rest("z")
     client.shows("x", "state", AxisStateCode.ERROR_STOP)
     client.wait_last("x", lambda block: block.set_velocity[-1] == 0.0, "at rest")
