@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from machine_support import CYCLE_TIME, PTP, MachineBench
+from commands_support import call
+from machine_support import CYCLE_TIME, PTP, ROOT, MachineBench
 from scipy.interpolate import CubicHermiteSpline
 
 from cnc_ptp.client import Machine
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.blocks import CycleTick, PlcBlock
 from cnc_ptp.protocol.jobs import JobStatus
+from cnc_ptp.recording.reader import read_recording
 
 POINTS = [[0.5, [20.0, -5.0, 90.0], [60.0, 0.0, 0.0]], [1.2, [0.0, 30.0, 45.0], [0.0, 0.0, 0.0]]]
 AXES = ["x", "y", "c"]
+PTP_FILE = ROOT / "config" / "ptp.yaml"
 
 
 def bench_of() -> MachineBench:
@@ -182,8 +186,32 @@ def test_another_trajectory_of_an_active_axis_is_refused() -> None:
     follow(bench)
 
 
+PLC_FILE = """
+class Plc:
+    def cycle(self, io):
+        if io.cycle == 100:
+            io.follow_trajectory(["x", "y"], [(0.5, [20.0, 30.0], [0.0, 0.0])], goal_tolerance=[0.1, 0.1], goal_time=0.1)
+            io.follow_trajectory(["x"], [])
+        io.done(io.time > 1.0)
+"""
+
+
+def test_a_plc_in_a_file(tmp_path: Path) -> None:
+    file = tmp_path / "trajectory.py"
+    file.write_text(PLC_FILE)
+    done = call("simulate", PTP_FILE, "--plc", file, "--record", tmp_path / "r.mcap")
+    assert "follow_trajectory refused: axis x follows another trajectory; stop it first" in done.output
+    commands = [
+        record for record in read_recording(tmp_path / "r.mcap").commands if record.command == "begin_trajectory"
+    ]
+    assert [(record.target, record.cycle, record.accepted) for record in commands] == [
+        ("x", 100, True),
+        ("y", 100, True),
+    ]
+
+
 def test_a_client_offline() -> None:
-    with Machine.offline("config/ptp.yaml") as m:
+    with Machine.offline(PTP_FILE) as m:
         m.plc.follow_trajectory(AXES, POINTS, goal_tolerance=(0.1, 0.1, 0.1), goal_time=0.5)
         m.run_for(2.0)
         assert [m.axes[axis].state.set_position for axis in AXES] == [0.0, 30.0, 45.0]
