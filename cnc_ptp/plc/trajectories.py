@@ -13,7 +13,7 @@ from cnc_ptp.protocol.jobs import JobStatus
 from cnc_ptp.protocol.unit import PLC
 
 FOLLOW, BEGIN = "follow_trajectory", "begin_trajectory"
-"""What the PLC is told, and what it tells each axis."""
+"""The command to the PLC, and that of the PLC to each axis."""
 QUANTITIES = ("positions", "velocities", "accelerations")
 
 
@@ -28,7 +28,7 @@ class Member:
     message: str = ""
     """Why the axis has refused it."""
     cycle: int = 0
-    """At which it has ended."""
+    """In which it has ended."""
     stopped: bool = False
     """The PLC has stopped it, because another one has failed."""
 
@@ -51,7 +51,7 @@ class FollowedTrajectory:
     members: dict[str, Member]
     sent: bool = False
     lost: str = ""
-    """An axis that tells nothing any more."""
+    """An axis that no longer reports anything."""
 
     @property
     def over(self) -> bool:

@@ -149,6 +149,15 @@ def test_a_path_tolerance_stops_all_axes(client):
     client.at_rest("x")
 
 
+def test_a_goal_tolerance_that_is_missed_leaves_the_axis_at_a_standstill(client):
+    goal = client.blocks["z"][-1].set_position[-1] + 20.0
+    rows = [(0.2, [goal * 1e-3], [0.0])]
+    result = client.result(client.follow(["z"], rows, goal_tolerance=[1e-9]))
+    assert (result.success, result.error_code, result.error_id) == (False, Result.GOAL_TOLERANCE_VIOLATED, 23066)
+    assert "0 s after its end, more than the goal tolerance 1e-06 mm" in result.error_string
+    client.at_rest("z")
+
+
 def test_refused_goals_move_nothing(client):
     before = {axis: client.blocks[axis][-1].set_position[-1] for axis in ("x", "y")}
     result = client.result(client.follow(["x", "q"], [(1.0, [0.0, 0.0], [0.0, 0.0])]))

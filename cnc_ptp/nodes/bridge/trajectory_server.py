@@ -52,7 +52,7 @@ class TrajectoryServer(JobServer):
         self._followed: FollowedTrajectory | None = None
         self._joints: list[str] = []
         self._texts: dict[tuple[str, int], str] = {}
-        """Texts of events since the begin, by axis and number."""
+        """Texts of events since its start, by axis and number."""
         self._waited = 0
         node.create_subscription(msg.Event, EVENT, self._on_event, EVENTS)
         node.create_subscription(JointTrajectory, TRAJECTORY_TOPIC, self._on_topic, PLC_INPUT)
