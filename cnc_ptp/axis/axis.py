@@ -92,6 +92,8 @@ class Axis:
         self.jobs = jobs
         self.waiting_job = 0
         """Number of the job that waits for the end of the active one, or of a stop; 0: none waits."""
+        self.seeks_goal = False
+        """The trajectory has a goal tolerance and has not come into it."""
         self.last_target: float | None = None
         """Target of the last positioning, whatever has become of it; None when there has been another motion since."""
         self.powered = parameters.powered_at_start
@@ -159,6 +161,7 @@ class Axis:
         The acceleration of compensation and external setpoints is not limited in jerk and ends here: on a jerk-limited
         ramp it would raise the velocity further.
         """
+        self.leave_trajectory(cycle)
         if self.superposed:
             position, velocity, _, _ = self.setpoint(cycle)
             acceleration = self.ptp.state(cycle)[2]
@@ -189,6 +192,12 @@ class Axis:
         self.ptp.take_over(cycle, position, velocity, acceleration)
         self._end_superposition(cycle)
         self.ptp.stop(cycle, self.own_limits, at_least=True)
+
+    def leave_trajectory(self, cycle: int) -> None:
+        """The axis' own generator continues from the trajectory, with as much acceleration as it may keep."""
+        if self.ptp.follows:
+            position, velocity, acceleration, _ = self.ptp.state(cycle)
+            self.ptp.take_over(cycle, position, velocity, self._bearable(velocity, acceleration))
 
     def leave_master(self, cycle: int) -> None:
         """The axis' own generator continues the motion of the coupling, with as much acceleration as it may keep."""
@@ -242,6 +251,7 @@ class Axis:
             self.lead.cancel()
             return
         self.setpoint(cycle)  # brings compensation and external setpoints up to this cycle
+        self.leave_trajectory(cycle)
         self.target_window.target = None
         self.ptp.stop(cycle, self.own_limits, locks=locks)
         self.compensation.stop()
@@ -267,6 +277,8 @@ class Axis:
     def release_feed(self, cycle: int, *, forward: bool, backward: bool) -> None:
         """Releases each direction of motion, or withholds it."""
         self.ptp.release(cycle, forward=forward, backward=backward)
+        if self.ptp.follows and self.ptp.restricted:
+            self.abort_motion(cycle)
         if self.ptp.withholds(self.added.state(cycle)[1]):
             self.halt_added(cycle)
         if not self.ptp.withholds(self.path_direction):
@@ -310,7 +322,9 @@ class Axis:
     def has_job(self) -> bool:
         if self.jobs.superimposed:
             return True
-        return self._master_has_job if self.coupled else self.ptp.job is not None or self.state == S.HOMING
+        if self.coupled:
+            return self._master_has_job
+        return self.ptp.job is not None or self.ptp.follows or self.state == S.HOMING
 
     def follow_master(self, target_velocity: float, has_job: bool) -> None:
         """What the master reports about its motion besides its setpoints."""
@@ -355,6 +369,13 @@ class Axis:
         """Something that is no job stops the axis."""
         self.drop_waiting(cycle)
         self.jobs.end(cycle, JobStatus.ABORTED)
+
+    def abort_motion(self, cycle: int) -> None:
+        """Something that is no job stops the axis on its ramp (state Stopping)."""
+        self.abort_job(cycle)
+        self.stop(cycle)
+        self.take(T.STOP)
+        self.has_been_stopped = True
 
     def next_job(self, cycle: int) -> None:
         """The active job has ended in full; the one that has waited is the active one."""
@@ -405,7 +426,7 @@ class Axis:
             self.take(T.NEW_TARGET)
             self.has_been_stopped = False
             self.next_job(cycle)
-        if not self.ptp.arrived(cycle):
+        if not self.ptp.arrived(cycle) or (self.ptp.follows and self.seeks_goal):
             return
         self.compensation.end()
         if self.compensation.moving:
@@ -482,7 +503,8 @@ class Axis:
             return 0
         if velocity != 0.0:
             return CONSTANT_VELOCITY if acceleration == 0.0 else 0
-        if self.ptp.job is None and self.target_window.reached(position, actual_position):
+        leads = self.ptp.job is not None or self.ptp.follows
+        if not leads and self.target_window.reached(position, actual_position):
             return IN_TARGET_POSITION
         return 0
 

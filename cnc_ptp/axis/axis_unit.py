@@ -29,6 +29,8 @@ from cnc_ptp.axis.probe import Probe
 from cnc_ptp.axis.ptp_commands import PtpCommands
 from cnc_ptp.axis.stop_commands import StopCommands
 from cnc_ptp.axis.superimposed_commands import SuperimposedCommands
+from cnc_ptp.axis.trajectory_commands import TrajectoryCommands
+from cnc_ptp.axis.trajectory_watch import TrajectoryWatch
 from cnc_ptp.control.commands import FEEDFORWARD_WAITS, ControlCommands, feedforward_warning
 from cnc_ptp.control.control_loop import ControlColumns, ControlLoop
 from cnc_ptp.control.drives import Drive, make_drive
@@ -75,6 +77,7 @@ class AxisUnit(Unit):
         )
         self._queue = MotionQueue(self._axis, cycle_time=cycle_time, report_warning=self._report_warning)
         self._monitoring = Monitoring(self._axis, cycle_time=cycle_time, report_warning=self._report_warning)
+        self._trajectory = TrajectoryWatch(self._axis, cycle_time=cycle_time, report_warning=self._report_warning)
         self._loop = ControlLoop(
             parameters.control,
             cycle_time=cycle_time,
@@ -107,6 +110,7 @@ class AxisUnit(Unit):
             StopCommands(self._axis),
             JogCommands(self._axis, self._queue),
             SuperimposedCommands(self._axis, self._queue),
+            TrajectoryCommands(self._axis, self._trajectory, cycle_time=cycle_time),
             CoordinateCommands(self._axis, self._loop, self._queue, self._monitoring),
             HomingCommands(self._axis, self._homing, self._drive_homing),
             DriveParameterCommands(self._axis, self._drive_homing),
@@ -300,6 +304,7 @@ class AxisUnit(Unit):
         setpoint = self._monitoring.watch(cycle, setpoint)
         self._master.gantry.watch(cycle, setpoint, actual_position)
         self._monitoring.watch_target(cycle, setpoint, actual_position)
+        self._trajectory.watch(cycle, setpoint, actual_position)
         closed = not axis.lead.active and (axis.powered or axis.moving(cycle))
         if closed and axis.error_id == 0 and loop.too_far(setpoint):
             axis.fault(cycle, FOLLOWING_ERROR, loop.why_too_far(setpoint, axis.unit), setpoint)

@@ -17,6 +17,7 @@ from cnc_ptp.axis.faults import (
     VIRTUAL_AXIS,
 )
 from cnc_ptp.axis.job import Job
+from cnc_ptp.axis.motions import refuse_beside_trajectory
 from cnc_ptp.errors import warning_text
 from cnc_ptp.motion import Profile
 from cnc_ptp.motion.limits import LARGEST_LIMIT, SMALLEST_LIMIT
@@ -78,6 +79,7 @@ class CompensationCommands:
         axis = self._axis
         if axis.parameters.virtual:
             axis.refuse(START, VIRTUAL_AXIS, "a virtual axis cannot compensate (P-AXIS-00020)")
+        refuse_beside_trajectory(axis, START)
         if axis.compensation.active:
             axis.refuse(START, COMPENSATION_LOCKED, "a position compensation is active; it cannot be started again")
         if axis.added.moving(cycle):

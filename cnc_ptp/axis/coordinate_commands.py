@@ -6,7 +6,7 @@ from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.faults import MASTER_HOMES, NOT_READY
 from cnc_ptp.axis.monitoring import Monitoring
 from cnc_ptp.axis.motion_queue import MotionQueue
-from cnc_ptp.axis.motions import refuse_other_source
+from cnc_ptp.axis.motions import refuse_beside_trajectory, refuse_other_source
 from cnc_ptp.control.control_loop import ControlLoop
 from cnc_ptp.motion.limits import LARGEST_STATE, OUT_OF_RANGE
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
@@ -43,6 +43,7 @@ class CoordinateCommands:
     def _check_state(self) -> None:
         axis = self._axis
         refuse_other_source(axis, SET, "external setpoints are enabled; disable them")
+        refuse_beside_trajectory(axis, SET)
         if axis.state in (S.HOMING, S.SYNCHRONIZED_MOTION):
             state = state_name(axis.state)
             axis.refuse(SET, NOT_READY, f"the axis is in {state}", state=state)

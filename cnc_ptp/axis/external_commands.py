@@ -18,6 +18,7 @@ from cnc_ptp.axis.faults import (
     NOT_READY,
     SUPERIMPOSED_RUNS,
 )
+from cnc_ptp.axis.motions import refuse_beside_trajectory
 from cnc_ptp.errors import warning_text
 from cnc_ptp.parameters.declare import ids
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
@@ -86,6 +87,7 @@ class ExternalCommands:
         if axis.state in (S.STOPPING, S.HOMING):
             state = state_name(axis.state)
             axis.refuse(ENABLE, NOT_READY, f"the axis is in {state}", state=state)
+        refuse_beside_trajectory(axis, ENABLE)
         enabled = axis.external.mode
         if enabled is not None and enabled != mode:
             reason = f"external setpoints are enabled as {enabled}; {mode} does not match"

@@ -37,7 +37,7 @@ class Monitoring:
         axis = self._axis
         if axis.superposed or axis.error_id or (axis.ptp.restricted and axis.state == S.SYNCHRONIZED_MOTION):
             return False
-        if axis.state == S.HOMING or axis.lead.active:
+        if axis.state == S.HOMING or axis.lead.active or axis.ptp.follows:
             return False
         last_cycle = first_cycle + len(setpoints) - 1
         if axis.state in MOVING_ALONE and axis.ptp.arrived(last_cycle):
@@ -142,7 +142,8 @@ class Monitoring:
     def watch_target(self, cycle: int, setpoint: MotionState, actual_position: float) -> None:
         """Warns once of an axis that has not come into its target window in time."""
         axis, window = self._axis, self._axis.target_window
-        if setpoint[1] != 0.0 or axis.ptp.job is not None or axis.lead.active:
+        leads = axis.ptp.job is not None or axis.ptp.follows or axis.lead.active
+        if setpoint[1] != 0.0 or leads:
             window.moves()
             return
         if not window.overdue(cycle, setpoint[0], actual_position):

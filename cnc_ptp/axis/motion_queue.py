@@ -20,7 +20,7 @@ from cnc_ptp.axis import transitions as T
 from cnc_ptp.axis.axis import Axis, Report
 from cnc_ptp.axis.faults import BELOW_INCREMENT, COMPENSATION_RUNS, MOTION_WAITS, NOT_READY
 from cnc_ptp.axis.job import Job
-from cnc_ptp.axis.motions import Motion, ToModulo, ToTarget, refuse_other_source
+from cnc_ptp.axis.motions import Motion, ToModulo, ToTarget, refuse_beside_trajectory, refuse_other_source
 from cnc_ptp.errors import CncError, warning_text
 from cnc_ptp.motion import Limits, stopping_distance
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
@@ -77,7 +77,9 @@ class MotionQueue:
         if buffer_mode == ABORTING:
             if axis.compensation.active:
                 axis.refuse(command, COMPENSATION_RUNS, "a position compensation is active")
-        elif axis.waiting_job:
+            return
+        refuse_beside_trajectory(axis, command)
+        if axis.waiting_job:
             reason = f"job {axis.waiting_job} waits already, no other can"
             axis.refuse(command, MOTION_WAITS, reason, job=axis.waiting_job)
 
@@ -105,6 +107,7 @@ class MotionQueue:
     def begin(self, cycle: int, motion: Motion, goal: float, *, jog: bool = False) -> None:
         """Leads the axis to `goal`."""
         axis = self._axis
+        axis.leave_trajectory(cycle)
         target, from_rest = goal - axis.shift(cycle), axis.state == S.STANDSTILL
         if from_rest and not motion.endless:
             axis.ptp.start(cycle, target, motion.limits)

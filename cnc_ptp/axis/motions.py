@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from math import copysign
 
 from cnc_ptp.axis.axis import Axis
-from cnc_ptp.axis.faults import SLAVE_LOCKED, START_BESIDE_EXTERNAL
+from cnc_ptp.axis.faults import SLAVE_LOCKED, START_BESIDE_EXTERNAL, TRAJECTORY_RUNS
 from cnc_ptp.axis.modulo import modulo_target
 from cnc_ptp.motion import Limits
 from cnc_ptp.motion.limits import rounding
@@ -21,6 +21,12 @@ def refuse_other_source(axis: Axis, command: str, beside_external: str = BESIDE_
     if axis.coupled and axis.coupling is not None:
         reason = f"the axis is a slave of {axis.coupling.master}; decouple it"
         axis.refuse(command, SLAVE_LOCKED, reason, master=axis.coupling.master)
+
+
+def refuse_beside_trajectory(axis: Axis, command: str) -> None:
+    """Raises 23067 for what would move the axis away from its trajectory."""
+    if axis.ptp.follows:
+        axis.refuse(command, TRAJECTORY_RUNS, "the axis follows a trajectory; stop it first")
 
 
 class Motion(ABC):

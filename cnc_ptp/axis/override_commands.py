@@ -37,6 +37,7 @@ class OverrideCommands:
         if axis.ptp.job is None and axis.ptp.finished(cycle):
             return None  # only a superimposed motion is left, which has no override
         reason = "the axis stops" if axis.ptp.job is None else "brake phase or level out of reach"
+        reason = "a trajectory keeps its times" if axis.ptp.follows else reason
         return f"axis {axis.name}: override {percent} % does not change the active motion ({reason})"
 
     def do_set_override_type(self, cycle: int, *, type: int) -> None:

@@ -52,20 +52,13 @@ class PowerCommands:
             what = "path motion" if axis.on_path else "synchronous motion"
             axis.fault(cycle, ENABLE_REMOVED, f"the enable was removed during {what}")
         elif axis.state in STOPPABLE:
-            self._stop(cycle)
-
-    def _stop(self, cycle: int) -> None:
-        axis = self._axis
-        axis.abort_job(cycle)
-        axis.stop(cycle)
-        axis.take(T.STOP)
-        axis.has_been_stopped = True
+            axis.abort_motion(cycle)
 
     def do_reset(self, cycle: int) -> None:
         """Leaves ErrorStop; refused while the axis moves (23008). PTP motion and external setpoints are aborted."""
         axis = self._axis
         if axis.state in STOPPABLE:
-            self._stop(cycle)
+            axis.abort_motion(cycle)
         if axis.on_path:
             axis.external.disable(cycle)
             axis.halt_added(cycle)

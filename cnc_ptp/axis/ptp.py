@@ -57,6 +57,8 @@ class PtpGenerator:
         self._due: int | None = None
         self.override_type = override_type
         self.job: Job | None = None
+        self.follows = False
+        """The table is a trajectory; neither override nor feed release change it."""
         self.override = 1.0
         self._forward = self._backward = True
         self._waits_for_release = False
@@ -341,8 +343,15 @@ class PtpGenerator:
             activation, self._activation = self._activation, None
             self._change_velocity(cycle, self.job, activation.velocity)
 
+    def follow(self, cycle: int, trajectory: Profile) -> None:
+        """Follows a trajectory from a standstill on."""
+        self.finish()
+        self._set(cycle, trajectory, None)
+        self.follows = True
+
     def finish(self) -> None:
-        """The table has finished: job and stop have ended."""
+        """The table has finished: job, stop and trajectory have ended."""
+        self.follows = False
         self.job = self._stopped_job = None
         self._ramp_limits = None
         self._suspended = self._activation = self._due = None
@@ -363,6 +372,7 @@ class PtpGenerator:
         self._origin = cycle
         self._profile = profile
         self._ramp_limits = limits
+        self.follows = False
         if self._activation is not None:
             self._due = self._crossing(cycle, self._activation)
 

@@ -16,6 +16,7 @@ from cnc_ptp.axis.faults import (
     VELOCITY_TOO_HIGH,
 )
 from cnc_ptp.axis.motion_queue import MotionQueue
+from cnc_ptp.axis.motions import refuse_beside_trajectory
 from cnc_ptp.errors import warning_text
 from cnc_ptp.motion import Limits
 from cnc_ptp.motion.limits import SMALLEST_LIMIT
@@ -61,6 +62,7 @@ class SuperimposedCommands:
         axis = self._axis
         if axis.state not in PERMITTED:
             axis.refuse(MOVE, NOT_READY, f"the axis is in {state_name(axis.state)}", state=state_name(axis.state))
+        refuse_beside_trajectory(axis, MOVE)
         if axis.external.mode is not None:
             axis.refuse(MOVE, START_BESIDE_EXTERNAL, "external setpoints are enabled")
         if axis.compensation.active:

@@ -23,11 +23,12 @@ from cnc_ptp.protocol.commands import (
     with_floats,
 )
 
-Rows = Sequence[Sequence[float]]
-"""Points of a cam table, external setpoints."""
+Rows = Sequence[Any]
+"""Points of a cam table or a trajectory, external setpoints; names and numbers of several axes."""
 CONVERTED: Mapping[str, Callable[[Any], Any]] = {
     "table": lambda rows: [[*row] for row in rows],
     "setpoints": lambda rows: [[*row] for row in rows],
+    **dict.fromkeys(("axes", "points", "path_tolerance", "goal_tolerance"), list),
     "files": dict,
     "program": lambda path: str(Path(path).absolute()),
 }

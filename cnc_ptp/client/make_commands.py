@@ -81,7 +81,7 @@ def imports(kind: str) -> Iterator[str]:
 
 def rows(kind: str) -> set[str]:
     kinds = {argument.kind for command in commands_of(kind) for argument in COMMANDS[kind][command].values()}
-    return {"Rows"} if kind == "axis" and "rows" in kinds else set()
+    return {"Rows"} if "rows" in kinds and kind in ("axis", "plc") else set()
 
 
 def returned(kind: str, command: str) -> str:

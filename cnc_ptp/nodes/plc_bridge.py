@@ -25,6 +25,7 @@ from cnc_ptp.nodes.bridge.jog_topics import JogTopics
 from cnc_ptp.nodes.bridge.joint_states import JointStates
 from cnc_ptp.nodes.bridge.plc_watch import PlcWatch
 from cnc_ptp.nodes.bridge.setpoint_services import SetpointServices
+from cnc_ptp.nodes.bridge.trajectory_server import TrajectoryServer
 from cnc_ptp.nodes.bridge.value_topics import ValueTopics
 from cnc_ptp.nodes.topics import LIFE_SIGN, PLC_INPUT, PLC_TOPICS, VALUE_TOPICS, plc_quality, plc_topic
 from cnc_ptp.nodes.unit.unit_node import UnitNode
@@ -52,6 +53,7 @@ class PlcBridgeNode(UnitNode):
     /<axis|spindle>/enable (Switch), /<axis>/feed_release (FeedRelease), /<axis>/external_setpoint (ExternalSetpoint),
     /<axis>/jog (Jog), /plc/life_sign (LifeSign), /<unit>/hli/control (<Kind>HliControl), /emergency_stop (Bool).
     Services besides: /emergency_stop/press, release, reset (std_srvs/Trigger).
+    /trajectory/joint_trajectory (JointTrajectory). Action: /trajectory/follow_joint_trajectory (FollowTrajectory).
     A jog ends when its messages stop. Of overrides, switches and releases a value counts when it changes; the last one
     holds when messages stop; `valid` = false means 100 %, no feed hold, enabled, released, and has no effect on a topic
     that was never valid. An override of a spindle that came in a rhythm and falls silent is an event. A life sign that
@@ -88,6 +90,7 @@ class PlcBridgeNode(UnitNode):
         self._jogs = JogTopics(self._warn)
         self._joints_due = 0
         self._answers: CouplingServices | None = None
+        self._trajectories: TrajectoryServer | None = None
 
     def setup(self) -> None:
         """As UnitNode, with the topics of the PLC, couplings and joint states."""
@@ -102,6 +105,7 @@ class PlcBridgeNode(UnitNode):
         self.create_timer(self._life_sign_timeout / 4.0, self._watch_topics)
         self._answers = CouplingServices(self, self.plc, list(self._machine.axes))
         SetpointServices(self, self.plc, self._machine.axes)
+        self._trajectories = TrajectoryServer(self, self.plc, self._machine)
         self._joints = JointStates(self, self._machine)
 
     def _listen(self, unit: str, name: str) -> None:
@@ -158,6 +162,8 @@ class PlcBridgeNode(UnitNode):
     def run_ended(self) -> None:
         if self._answers is not None:
             self._answers.end()
+        if self._trajectories is not None:
+            self._trajectories.end()
 
     def destroy_node(self) -> None:
         self.run_ended()
@@ -167,6 +173,8 @@ class PlcBridgeNode(UnitNode):
         """HLI and joint states of the cycle before the block: the last one that axes and spindles have reported."""
         if isinstance(block, PlcBlock):
             self._hli_topics.publish(self.plc, block, self.stamp)
+        if self._trajectories is not None:
+            self._trajectories.after_block(block)
         self._emergency_stop.show()
         if not self._state_period or block.first_cycle < max(self._joints_due, 1):
             return

@@ -131,6 +131,7 @@ SERVICES: dict[str, dict[str, Any]] = {
         "auto_acknowledge": srv.SetSwitch,
         "set_life_sign": srv.SetHold,
         "set_input": srv.SetInput,
+        "follow_trajectory": srv.FollowTrajectory,
         "emergency_stop": srv.SetSwitch,
         "reset": srv.Execute,
         "stop_all": srv.Execute,
@@ -174,6 +175,9 @@ HLI_STATUS: dict[str, Any] = {
 CONTROL = "hli/control"
 STATUS = "hli/status"
 EMERGENCY_STOP_TOPIC = "emergency_stop"
+TRAJECTORY_ACTION = "trajectory/follow_joint_trajectory"
+TRAJECTORY_TOPIC = "trajectory/joint_trajectory"
+"""Trajectories of several axes in SI units, as ros2_control names them."""
 
 
 def value_topics(*names: str) -> dict[str, Any]:

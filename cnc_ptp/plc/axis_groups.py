@@ -18,6 +18,7 @@ STARTS = frozenset(
         "move_velocity",
         "move_superimposed",
         "jog",
+        "begin_trajectory",
         "external_enable",
     }
 )

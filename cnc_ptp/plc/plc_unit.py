@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping
-from typing import ClassVar
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, ClassVar
 
 from cnc_ptp.axis.external_commands import SETPOINTS
 from cnc_ptp.errors import CncError
@@ -16,6 +16,7 @@ from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.plc.setpoint_file import SetpointRow, check_setpoints, placed
 from cnc_ptp.plc.setpoint_queue import SetpointQueue
 from cnc_ptp.plc.spindle_answers import spindle_answers
+from cnc_ptp.plc.trajectories import FollowedTrajectory, Trajectories
 from cnc_ptp.protocol.axis_states import REST_STATES, AxisStateCode, StatusBit
 from cnc_ptp.protocol.blocks import (
     AxisBlock,
@@ -71,6 +72,9 @@ class PlcUnit(Unit):
         self._end_when_idle = end_when_idle
         spindles = {unit for unit, kind in self._kinds.items() if kind == "spindle"}
         self._groups = AxisGroups(axes or {}, cycle_time=cycle_time, spindles=spindles)
+        self._trajectories = Trajectories([unit for unit, kind in self._kinds.items() if kind == "axis"])
+        self.trajectory: FollowedTrajectory | None = None
+        """The newest one."""
         self._outgoing: list[Command] = []
         self.setpoints = SetpointQueue(cycle_time=cycle_time, warn=self._warn)
         """External setpoints that scenario and topics give."""
@@ -180,6 +184,24 @@ class PlcUnit(Unit):
             raise CncError(BAD_ARGUMENT, reason, "nothing was changed", where=where, unit=unit)
         (self._served.add if enabled else self._served.discard)(unit)
 
+    def do_follow_trajectory(
+        self,
+        cycle: int,
+        *,
+        axes: Sequence[Any],
+        points: Sequence[Any],
+        path_tolerance: Sequence[Any] = (),
+        goal_tolerance: Sequence[Any] = (),
+        goal_time: float = 0.0,
+    ) -> None:
+        """Axes follow a trajectory together: rows of time and lists of what each axis has; all of them or none begins.
+
+        Refused (23064) when the rows do not fit the axes, or an axis follows another one; each axis checks its own
+        values, and one that refuses or fails stops the others.
+        """
+        self.trajectory = self._trajectories.begin(axes, points, path_tolerance, goal_tolerance, goal_time)
+        self._outgoing += [member.command for member in self.trajectory.members.values()]
+
     def do_emergency_stop(self, cycle: int, *, enabled: bool) -> str | None:
         """Everything stops at once and is locked until this is off again and each unit has been reset.
 
@@ -264,6 +286,7 @@ class PlcUnit(Unit):
         first_cycle, count = tick
         self.reported = inputs
         self._outgoing += self._groups.report(first_cycle, inputs)
+        self._outgoing += self._trajectories.report(inputs)
         self.setpoints.watch(inputs)
         self._play_scenario(first_cycle)
         self._note_requests(inputs)
@@ -277,6 +300,7 @@ class PlcUnit(Unit):
         run_done = self._end_when_idle and self._run_done(count, inputs)
         if self._life_sign_on:
             self._life_sign += 1
+        self._trajectories.place(count * self._cycle_time)
         commands, self._outgoing = self._groups.complete(self._outgoing, self._lost)
         for command in commands:
             self._commands_sent += 1

@@ -39,6 +39,7 @@ SWITCH = Argument("switch")
 TEXT = Argument("text")
 OPTIONAL_TEXT = Argument("text", required=False)
 ROWS = Argument("rows")
+OPTIONAL_ROWS = Argument("rows", required=False)
 OPTIONAL_COUNT = Argument("integer", required=False, positive=True)
 OPTIONAL_POSITIVE = Argument("number", required=False, positive=True)
 LENIENT_NUMBER = Argument("number", required=False, lenient=True)
@@ -139,6 +140,13 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "write_drive_parameter": {"idn": TEXT, "value": INTEGER},
         "overlay": OVERLAY,
         "set_emergency_stop": {"enabled": SWITCH},
+        "begin_trajectory": {
+            "points": ROWS,
+            "path_tolerance": OPTIONAL_NUMBER,
+            "goal_tolerance": OPTIONAL_NUMBER,
+            "goal_time": OPTIONAL_NUMBER,
+            "delay": OPTIONAL_NUMBER,
+        },
         "lead": {"slave": TEXT, "enabled": SWITCH},
         "group_error": {"source": TEXT, "error": INTEGER},
         "upstream_lost": SOURCE,
@@ -214,6 +222,13 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "set_life_sign": {"enabled": SWITCH},
         "set_input": {"name": TEXT, "value": NUMBER},
         "serve": {"unit": TEXT, "enabled": SWITCH},
+        "follow_trajectory": {
+            "axes": ROWS,
+            "points": ROWS,
+            "path_tolerance": OPTIONAL_ROWS,
+            "goal_tolerance": OPTIONAL_ROWS,
+            "goal_time": OPTIONAL_NUMBER,
+        },
         "emergency_stop": {"enabled": SWITCH},
         "reset": {},
         "stop_all": {},
@@ -227,6 +242,7 @@ INTERNAL = frozenset(
     {
         "upstream_lost",
         "abort",
+        "begin_trajectory",
         "lead",
         "group_error",
         "coupling_answer",

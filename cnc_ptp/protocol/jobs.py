@@ -23,6 +23,7 @@ JOBS: Mapping[str, Collection[str]] = {
             "move_velocity",
             "new_target",
             "new_velocity_and_target",
+            "begin_trajectory",
             "jog",
             "home",
             "stop",

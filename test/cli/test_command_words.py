@@ -9,6 +9,8 @@ from cnc_ptp.commands.client.command_words import read_arguments
 from cnc_ptp.errors import CncError
 from cnc_ptp.nodes.client.machine_client import arguments_of, services_of
 from cnc_ptp.nodes.client.requests import request_of
+from cnc_ptp.nodes.unit.requests import given_arguments
+from cnc_ptp.protocol.commands import COMMANDS
 
 
 def read(kind, command, *words, unit="u"):
@@ -60,6 +62,22 @@ def test_texts_and_tables_travel_with_a_request():
     series = request_of(services_of("axis")["external_setpoints"], {"setpoints": [[1, 2, 3, 4, -1]]})
     (row,) = series.setpoints
     assert (row.cycle, row.position, row.velocity, row.acceleration, row.direction) == (1, 2.0, 3.0, 4.0, -1)
+
+
+@pytest.mark.parametrize("row", [[0.5, [1, 2]], [0.5, [1, 2], [3, 4]], [0.5, [1, 2], [3, 4], [5, 6]]])
+def test_a_trajectory_travels_with_a_request(row):
+    given = {"axes": ["x", "c"], "points": [row], "path_tolerance": [0.5, 1.0]}
+    request = request_of(services_of("plc")["follow_trajectory"], given)
+    assert given_arguments(COMMANDS["plc"]["follow_trajectory"], request) == given
+
+
+def test_what_is_no_point_of_a_trajectory_is_not_sent():
+    with pytest.raises(CncError) as caught:
+        request_of(services_of("plc")["follow_trajectory"], {"axes": ["x"], "points": [[0.5, "far"]]})
+    assert str(caught.value) == (
+        "P-ERR-22001 plc: follow_trajectory: point [0.5, 'far'] is not time, positions, velocities and accelerations; "
+        "nothing was sent"
+    )
 
 
 @pytest.mark.parametrize(

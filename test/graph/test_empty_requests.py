@@ -58,6 +58,7 @@ REFUSED = {
     ("channel", "teach_zero_offset"): "index = 0 is not within 1 ... 96; G53 selects no offset (P-ZERO-00001)",
     ("channel", "set_clamp_position"): "index = 4294967295 is not within 0 ... 149",
     ("plc", "set_input"): "argument 'value' is missing",
+    ("plc", "follow_trajectory"): "axes is empty; known are: x, y, z",
     ("channel", "acknowledge"): "no request 0 waits (waiting: none)",
     ("channel", "measuring_event"): "nothing in the running block waits for one",
 }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cnc_ptp.client.asking import Asking
+from cnc_ptp.client.asking import Asking, Rows
 from cnc_ptp.client.job import Answer
 
 
@@ -45,6 +45,32 @@ class PlcCommands(Asking):
         enabled  on or off
         """
         return self._answer("serve", unit=unit, enabled=enabled)
+
+    def follow_trajectory(
+        self,
+        axes: Rows,
+        points: Rows,
+        *,
+        path_tolerance: Rows | None = None,
+        goal_tolerance: Rows | None = None,
+        goal_time: float | None = None,
+    ) -> Answer:
+        """Axes follow a [trajectory](ptp.md#trajectories) together.
+
+        axes  names of the axes
+        points [s, mm, °]  rows time, positions, velocities, accelerations; each a list of all axes
+        path_tolerance [mm, °]  of each axis while it moves; 0: none; left out: none
+        goal_tolerance [mm, °]  of each axis at the end; 0: none; left out: none
+        goal_time [s]  to come into the goal tolerance; left out: 0
+        """
+        return self._answer(
+            "follow_trajectory",
+            axes=axes,
+            points=points,
+            path_tolerance=path_tolerance,
+            goal_tolerance=goal_tolerance,
+            goal_time=goal_time,
+        )
 
     def emergency_stop(self, enabled: bool) -> Answer:
         """Everything stops at once and is locked until this is off and each unit was reset.

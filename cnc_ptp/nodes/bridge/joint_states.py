@@ -24,7 +24,7 @@ class JointStates:
     """One message for the machine: position (m, rad), velocity (m/s, rad/s), effort (N, Nm; NaN of spindles)."""
 
     def __init__(self, node: Node, machine: MachineParameters) -> None:
-        self._to_si = {name: DEGREE if axis.rotary else MILLIMETRE for name, axis in machine.axes.items()}
+        self._to_si = si_factors(machine)
         self._to_load = {name: load_per_motor_torque(machine, name) for name in machine.axes}
         self._names = [*machine.axes, *machine.spindles]
         self._publisher = node.create_publisher(JointState, JOINT_STATES, PLC_INPUT)
@@ -54,6 +54,11 @@ class JointStates:
             position, speed = block.actual_position_deg[-1], block.actual_speed_rpm[-1]
             return position * DEGREE, speed * REVOLUTION_PER_MINUTE, math.nan
         return None
+
+
+def si_factors(machine: MachineParameters) -> dict[str, float]:
+    """Axis -> metres per mm, or radians per degree."""
+    return {name: DEGREE if axis.rotary else MILLIMETRE for name, axis in machine.axes.items()}
 
 
 def load_per_motor_torque(machine: MachineParameters, axis: str) -> float:

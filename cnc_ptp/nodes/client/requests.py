@@ -21,7 +21,7 @@ def request_of(service: Any, arguments: Mapping[str, Any]) -> Any:
     for name, kind in service.Request.get_fields_and_field_types().items():
         if name in arguments:
             value = arguments[name]
-            setattr(request, name, [setpoint_of(row) for row in value] if name == "setpoints" else value)
+            setattr(request, name, [ROW_MESSAGES[name](row) for row in value] if name in ROW_MESSAGES else value)
         elif name.startswith("has_"):
             setattr(request, name, name.removeprefix("has_") in arguments)
         elif kind == "double" and getattr(request, name) != NOT_GIVEN:
@@ -45,6 +45,24 @@ def setpoint_of(row: Sequence[float]) -> msg.ExternalSetpoint:
         acceleration=float(acceleration),
         direction=int(direction),
     )
+
+
+def point_of(row: Sequence[Any]) -> msg.TrajectoryPoint:
+    """The message of a point of a trajectory: time, positions, velocities, accelerations. Raises CncError 22001."""
+    try:
+        time, *lists = row
+        values = [[float(value) for value in each] for each in lists]
+        positions, velocities, accelerations = [*values, [], []][:3]
+        return msg.TrajectoryPoint(
+            time=float(time), positions=positions, velocities=velocities, accelerations=accelerations
+        )
+    except (TypeError, ValueError):
+        reason = f"point {row!r} is not time, positions, velocities and accelerations"
+        raise CncError(BAD_ARGUMENT, reason, "nothing was sent", where="plc: follow_trajectory") from None
+
+
+ROW_MESSAGES = {"setpoints": setpoint_of, "points": point_of}
+"""Arguments whose rows are messages."""
 
 
 def check_integers(where: str, service: Any, arguments: Mapping[str, Any]) -> None:

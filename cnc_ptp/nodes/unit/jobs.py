@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.action.server import GoalEvent, ServerGoalHandle
 
-from cnc_ptp.protocol.blocks import Command, CycleBlock
+from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock
 
 if TYPE_CHECKING:
     from cnc_ptp.nodes.unit.unit_node import UnitNode
@@ -31,7 +31,7 @@ class JobServer:
         name: str,
         *,
         start: Callable[[Any], list[Command]],
-        halt: Command,
+        halt: Command | None,
         feedback: Callable[[CycleBlock, Any], None],
         result: Callable[[CycleBlock, Any], bool | None],
     ) -> None:
@@ -66,9 +66,22 @@ class JobServer:
         for command in self._start(goal.request):
             record = self._node.command(command)
             if not record.accepted:
-                self._finish(self._type.Result(success=False, error_id=record.error_id, message=record.message))
+                self._finish(self.refused(record))
                 return
         self._first_cycle = record.cycle
+
+    def refused(self, record: CommandRecord) -> Any:
+        """The result of a goal whose start was refused."""
+        return self._type.Result(success=False, error_id=record.error_id, message=record.message)
+
+    def halt(self) -> None:
+        """Ends the job."""
+        if self._halt is not None:
+            self._node.command(self._halt)
+
+    def cut_off(self, reason: str) -> Any:
+        """The result of a job that is still active when the run ends."""
+        return self._type.Result(message=reason)
 
     def _finish(self, result: Any) -> None:
         """Answers the goal; the next one may come."""
@@ -79,13 +92,13 @@ class JobServer:
     def _cancel(self, goal: Goal) -> CancelResponse:
         if goal is not self._goal:
             return CancelResponse.REJECT
-        self._node.command(self._halt)
+        self.halt()
         return CancelResponse.ACCEPT
 
     def end(self) -> None:
         """The run has ended: an open job is answered as not finished."""
         if self._goal is not None:
-            self._finish(self._type.Result(message="the run has ended"))
+            self._finish(self.cut_off("the run has ended"))
 
     def after_block(self, block: CycleBlock) -> None:
         """Called by the node with each block that it has computed."""

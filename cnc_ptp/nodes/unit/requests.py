@@ -17,12 +17,25 @@ def given_arguments(known: Arguments, request: Any) -> dict[str, Any]:
 
     A field `has_<name>` says whether `<name>` counts.
     """
-    given = {name: getattr(request, name) for name in known if hasattr(request, name)}
+    given = {name: plain(known[name], getattr(request, name)) for name in known if hasattr(request, name)}
     return {
         name: value
         for name, value in given.items()
         if getattr(request, f"has_{name}", True) and not _is_left_out(known[name], value)
     }
+
+
+def plain(argument: Argument, value: Any) -> Any:
+    """Arrays of a message as the lists of a command; a TrajectoryPoint as its row."""
+    return [row_of(each) for each in value] if argument.kind == "rows" else value
+
+
+def row_of(value: Any) -> Any:
+    """Time, positions and what is given of velocities and accelerations; other values as they are."""
+    if not hasattr(value, "positions"):
+        return value
+    given = [[*each] for each in (value.velocities, value.accelerations)]
+    return [value.time, [*value.positions], *(given if given[1] else given[:1] if given[0] else [])]
 
 
 def objection(command: str, known: Arguments, request: Any) -> str:
@@ -51,6 +64,6 @@ def _is_left_out(argument: Argument, value: Any) -> bool:
         return True
     if argument.required:
         return False
-    if isinstance(value, str):
-        return value == ""
+    if isinstance(value, (str, list)):
+        return not value
     return (argument.positive and value == 0) or (isinstance(value, float) and math.isnan(value))

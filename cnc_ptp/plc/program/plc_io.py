@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from cnc_ptp.errors import nearest_name
 from cnc_ptp.parameters import ParameterSet
@@ -100,6 +100,10 @@ class PlcIo:
     def auto_acknowledge(self, enabled: bool) -> None:
         """Whether all requests and gear changes are acknowledged without the PLC in the file; on without a word."""
         self._commands.append(Command(PLC, "auto_acknowledge", {"enabled": enabled}))
+
+    def follow_trajectory(self, axes: Sequence[str], points: Sequence[Sequence[Any]], **options: Any) -> None:
+        """Axes follow a trajectory together, as the command of the same name; a refusal is an event of the PLC."""
+        self._commands.append(Command(PLC, "follow_trajectory", {"axes": [*axes], "points": [*points], **options}))
 
     def event(self, text: str) -> None:
         """An event on /events and in the recording."""
