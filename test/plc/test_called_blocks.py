@@ -218,7 +218,13 @@ def test_a_refused_call_is_none(m: Outside) -> None:
 @pytest.mark.parametrize(("kind", "name"), [(kind, name) for kind, known in BLOCK_TYPES.items() for name in known])
 def test_the_inputs_of_the_catalogue_are_those_of_the_blocks(kind: str, name: str) -> None:
     """Called with all that is needed, a block gives a command; with nothing else it takes each optional input."""
-    example = {"buffer_mode": "buffered", "direction": "cw", "parameter": "P-AXIS-00236", "master": "y", "mode": "relative"}
+    example = {
+        "buffer_mode": "buffered",
+        "direction": "cw",
+        "parameter": "P-AXIS-00236",
+        "master": "y",
+        "mode": "relative",
+    }
     example |= {"cam_table": [(0.0, 0.0), (1.0, 1.0), (2.0, 0.0)], "relative": True, "periodic": False}
     found = BLOCK_TYPES[kind][name]
     for optional in [(), *((each,) for each in found.optional), found.optional]:

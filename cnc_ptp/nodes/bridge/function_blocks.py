@@ -1,4 +1,4 @@
-"""/<axis|spindle>/function_block: the function blocks of PLCopen as one action, called by the PLC node block by block."""
+"""/<unit>/function_block: the function blocks of PLCopen as one action, called by the PLC node block by block."""
 
 from __future__ import annotations
 

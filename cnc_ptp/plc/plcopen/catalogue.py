@@ -1,4 +1,4 @@
-"""Function blocks with `execute` as data: those of an axis and of a spindle, with what must and may be given to them."""
+"""Function blocks with `execute` as data: those of axes and spindles, with what must and may be given to them."""
 
 from __future__ import annotations
 
