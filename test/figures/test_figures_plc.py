@@ -74,7 +74,9 @@ def test_the_bars_of_a_diagram_are_its_signals(name: str) -> None:
         shown = np.zeros(end, dtype=bool)
         for bar in plot.collections[row].get_paths():
             (begin, _), (over, _) = bar.vertices.min(axis=0), bar.vertices.max(axis=0)
-            shown[round(begin / CYCLE_TIME) : end if over > run.time[end - 1] - 1e-9 else round(over / CYCLE_TIME)] = True
+            shown[round(begin / CYCLE_TIME) : end if over > run.time[end - 1] - 1e-9 else round(over / CYCLE_TIME)] = (
+                True
+            )
         assert np.array_equal(shown, values[:end] > 0.0), path
 
 

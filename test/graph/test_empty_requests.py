@@ -19,6 +19,7 @@ from cnc_ptp.protocol.commands import COMMANDS
 UNITS = {"axis": (PTP, "y"), "spindle": (MILL, "s"), "channel": (MILL, "channel"), "plc": (MILL, "plc")}
 ALL = {kind: services | (COUPLING_SERVICES if kind == "axis" else {}) for kind, services in SERVICES.items()}
 NO_AXIS = "there is no axis ''. Known: x, z, c"
+NO_SERCOS = "the axis has no SERCOS drive (P-AXIS-00020), which has such parameters"
 NO_SLAVE = "the axis is not coupled (it is in Standstill)"
 REFUSED = {
     ("axis", "move_absolute"): "argument 'target' is missing",
@@ -32,6 +33,8 @@ REFUSED = {
     ("axis", "new_target"): "argument 'target' is missing",
     ("axis", "new_velocity_and_target"): "argument 'target' is missing",
     ("axis", "compensation_start"): "no basic motion is active (the axis is in Standstill)",
+    ("axis", "read_drive_parameter"): NO_SERCOS,
+    ("axis", "write_drive_parameter"): NO_SERCOS,
     ("axis", "write_parameter"): "argument 'value' is missing",
     ("axis", "external_enable"): "mode = '' is not absolute or relative",
     ("axis", "set_coupling_factor"): "argument 'factor' is missing",
@@ -62,7 +65,7 @@ REFUSED = {
 }
 """Reasons, in a unit at a standstill."""
 WHOLE_TEXT = {
-    ("channel", "mdi"): "mdi line 1 column 1 '': no main program",
+    ("channel", "mdi"): "mdi line 1 column 1 '': no main program; nothing was executed",
     ("plc", "acknowledge"): "plc plc: acknowledge refused: no request 0 waits; nothing was changed. Waiting: none",
 }
 MEANT = {

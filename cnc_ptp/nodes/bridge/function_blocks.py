@@ -58,7 +58,7 @@ class FunctionBlockActions:
                 node,
                 action.FunctionBlock,
                 f"{unit}/{NAME}",
-                lambda goal: goal.get_result(),  # not asked: `_begin` takes every goal
+                lambda goal: conclude(goal, action.FunctionBlock.Result()),  # not asked: `_begin` takes every goal
                 handle_accepted_callback=partial(self._begin, unit),
                 cancel_callback=self._cancel,
             )
