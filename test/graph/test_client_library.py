@@ -290,13 +290,13 @@ def test_a_unit_that_says_nothing(m):
     session = Session(link)
     session.run(session.until(lambda: "plc" in link.seen.blocks, 60.0, "the plc"))
     text = "nothing has come of ghost within 0.1 s; nothing was sent"
-    assert refusal(lambda: link.wait_until_complete(0.1))[:2] == (26166, text)
+    assert refusal(lambda: link.wait_until_complete(0.1))[:2] == (26176, text)
     text = "axis ghost: jog: no answer within 5 s; the jog was ended"
     assert refusal(lambda: session.ask("ghost", "jog", {"velocity": 1.0}))[:2] == (26136, text)
     link.seen.take_block = None
     text = "the client has failed: TypeError(\"'NoneType' object is not callable\"); its units continue"
-    assert refusal(lambda: session.run(session.until(lambda: False, 60.0, "-")))[:2] == (26161, text)
-    assert refusal(lambda: session.ask("plc", "stop_all", {}))[0] == 26161
+    assert refusal(lambda: session.run(session.until(lambda: False, 60.0, "-")))[:2] == (26171, text)
+    assert refusal(lambda: session.ask("plc", "stop_all", {}))[0] == 26171
     link.close()
 
 

@@ -140,13 +140,14 @@ def test_mc_stop_holds_the_axis_while_its_call_is_open(m: Outside) -> None:
 
 
 def test_blocks_that_end_with_the_answer(m: Outside) -> None:
-    for name, inputs in {
+    given: dict[str, dict[str, Any]] = {
         "MC_Reset": {},
         "MC_SetPosition": {"position": 5.0, "relative": True},
         "MC_WriteParameter": {"parameter": "P-AXIS-00236", "value": 5.0},
         "MC_ExtSetPointGenEnable": {"mode": "absolute"},
         "MC_ExtSetPointGenDisable": {},
-    }.items():
+    }
+    for name, inputs in given.items():
         assert m.ended(m.start("x", name, **inputs)) == "done", name
     assert m.now("x", "set_position") == 5.0
     out = m.start("x", "MC_GearOut")
@@ -218,7 +219,7 @@ def test_a_refused_call_is_none(m: Outside) -> None:
 @pytest.mark.parametrize(("kind", "name"), [(kind, name) for kind, known in BLOCK_TYPES.items() for name in known])
 def test_the_inputs_of_the_catalogue_are_those_of_the_blocks(kind: str, name: str) -> None:
     """Called with all that is needed, a block gives a command; with nothing else it takes each optional input."""
-    example = {
+    example: dict[str, Any] = {
         "buffer_mode": "buffered",
         "direction": "cw",
         "parameter": "P-AXIS-00236",
