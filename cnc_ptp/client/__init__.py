@@ -1,4 +1,7 @@
-"""A machine for programs, tests and notebooks: offline or as a ROS graph, with the same calls (docs/client.md)."""
+"""A machine for programs, tests and notebooks: offline or as a ROS graph, with the same calls (docs/client.md).
+
+The function blocks of PLCopen take its axes and spindles: `MC_MoveAbsolute(m.x)`, called once in `m.plc_cycles()`.
+"""
 
 from cnc_ptp.client.faults import UnknownUnit
 from cnc_ptp.client.job import Answer, Job, ProgramJob
@@ -7,6 +10,33 @@ from cnc_ptp.client.states import AxisState, ChannelState, SpindleState
 from cnc_ptp.client.stream import Stream
 from cnc_ptp.client.units import Axis, Channel, Plc, Spindle
 from cnc_ptp.errors import CncError
+from cnc_ptp.plc.plcopen import (
+    MC_CamIn,
+    MC_CamOut,
+    MC_ExtSetPointGenDisable,
+    MC_ExtSetPointGenEnable,
+    MC_ExtSetPointGenFeed,
+    MC_GearIn,
+    MC_GearOut,
+    MC_Halt,
+    MC_Home,
+    MC_MoveAbsolute,
+    MC_MoveAdditive,
+    MC_MoveModulo,
+    MC_MoveRelative,
+    MC_MoveSuperimposed,
+    MC_MoveVelocity,
+    MC_OrientSpindle,
+    MC_Power,
+    MC_ReadAxisError,
+    MC_ReadParameter,
+    MC_ReadStatus,
+    MC_Reset,
+    MC_SetOverride,
+    MC_SetPosition,
+    MC_Stop,
+    MC_WriteParameter,
+)
 from cnc_ptp.protocol.axis_states import AxisStateCode, StatusBit
 from cnc_ptp.protocol.blocks import Event, HandshakeRequest
 from cnc_ptp.protocol.channel_states import ChannelStateCode
@@ -26,6 +56,31 @@ __all__ = [
     "HandshakeRequest",
     "Job",
     "JobStatus",
+    "MC_CamIn",
+    "MC_CamOut",
+    "MC_ExtSetPointGenDisable",
+    "MC_ExtSetPointGenEnable",
+    "MC_ExtSetPointGenFeed",
+    "MC_GearIn",
+    "MC_GearOut",
+    "MC_Halt",
+    "MC_Home",
+    "MC_MoveAbsolute",
+    "MC_MoveAdditive",
+    "MC_MoveModulo",
+    "MC_MoveRelative",
+    "MC_MoveSuperimposed",
+    "MC_MoveVelocity",
+    "MC_OrientSpindle",
+    "MC_Power",
+    "MC_ReadAxisError",
+    "MC_ReadParameter",
+    "MC_ReadStatus",
+    "MC_Reset",
+    "MC_SetOverride",
+    "MC_SetPosition",
+    "MC_Stop",
+    "MC_WriteParameter",
     "Machine",
     "Plc",
     "ProgramJob",

@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from cnc_ptp.client.block_unit import BlockUnit
 from cnc_ptp.client.job import Answer, Job, ProgramJob
 from cnc_ptp.client.link import Reply
-from cnc_ptp.client.session import Session
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.command_files import with_table
 from cnc_ptp.plc.setpoint_file import check_setpoints
@@ -19,6 +19,7 @@ from cnc_ptp.protocol.commands import (
     OF_CHANNELS,
     OF_PLC,
     check_arguments,
+    check_command,
     check_sendable,
     with_floats,
 )
@@ -35,15 +36,8 @@ CONVERTED: Mapping[str, Callable[[Any], Any]] = {
 """Arguments of which a client takes more than commands do."""
 
 
-class Asking:
+class Asking(BlockUnit):
     """A unit that takes commands."""
-
-    def __init__(self, session: Session, name: str) -> None:
-        self._session = session
-        self.name = name
-        """As in the machine file."""
-        self.kind = session.link.kinds[name]
-        """axis, spindle, channel or plc."""
 
     def _answer(self, command: str, **arguments: Any) -> Answer:
         reply, _ = self._asked(command, arguments)
@@ -58,10 +52,17 @@ class Asking:
         return ProgramJob(self._session, self.name, command, given, reply)
 
     def _asked(self, command: str, arguments: dict[str, Any]) -> tuple[Reply, dict[str, Any]]:
-        """Reply and arguments, without those that are left out (None).
+        """Reply and arguments. Raises as `_prepared`, and the refusal of the unit."""
+        given = self._prepared(command, arguments)
+        return self._session.ask(self.name, command, given), given
 
-        Raises CncError 22001 (arguments), 26110, 25102, 25103 (files), and the refusal of the unit.
+    def _prepared(self, command: str, arguments: dict[str, Any]) -> dict[str, Any]:
+        """The arguments of a command without those that are left out (None).
+
+        Raises CncError 22001 (arguments), 22002 (the unit has no such command), 26110, 25102, 25103 (files).
         """
+        if command not in COMMANDS[self.kind]:
+            check_command(self.kind, self.name, command, {})
         given = {name: value for name, value in arguments.items() if value is not None}
         for name in FILE_CONTENTS & COMMANDS[self.kind][command].keys():
             given = with_table(given, name)
@@ -69,8 +70,7 @@ class Asking:
             if (convert := CONVERTED.get(name)) is not None:
                 given[name] = convert(value)
         self._check(command, given)
-        given = with_floats(self.kind, command, given)
-        return self._session.ask(self.name, command, given), given
+        return with_floats(self.kind, command, given)
 
     def _check(self, command: str, given: dict[str, Any]) -> None:
         """What a service cannot carry is refused here, offline as in the graph. Raises CncError 22001."""

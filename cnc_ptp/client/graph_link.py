@@ -6,7 +6,7 @@ import asyncio
 import json
 import threading
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from concurrent.futures import CancelledError, Future
 from contextlib import AbstractContextManager, nullcontext, suppress
 from functools import partial
@@ -35,7 +35,9 @@ from cnc_ptp.nodes.client.machine_client import NO_ANSWER, PATIENCE, MachineClie
 from cnc_ptp.nodes.polling_node import chain
 from cnc_ptp.nodes.process import take_priority
 from cnc_ptp.nodes.topics import BLOCK_CLASSES, BLOCK_TYPES, BLOCKS, COMMAND, EVENT, block_topic
-from cnc_ptp.parameters import read_machine
+from cnc_ptp.parameters import ParameterSet, read_machine
+from cnc_ptp.parameters.errors import Place
+from cnc_ptp.parameters.read.parameter_set import Given
 from cnc_ptp.protocol.blocks import CommandRecord, CycleBlock, Event, read_values
 from cnc_ptp.protocol.jobs import JobStatus
 from cnc_ptp.protocol.unit import PLC
@@ -59,7 +61,11 @@ class GraphLink(Link):
         self._sleepers: list[tuple[asyncio.AbstractEventLoop, asyncio.Future[None]]] = []
         self._tickets = count(1)
         self._asked: dict[int, Future[Reply]] = {}
+        self._image = threading.Lock()
+        self._is_held = False
+        self._later: list[Callable[[], None]] = []
         self._jogs: dict[str, Jogging] = {}
+        self._parameters: dict[str, ParameterSet] = {}
         self._heard = time.monotonic()
         self._gone: CncError | None = None
         self._is_open = False
@@ -102,18 +108,27 @@ class GraphLink(Link):
 
     def _take_block(self, unit: str, block: CycleBlock) -> None:
         self._heard = time.monotonic()
-        self.seen.take_block(unit, block)
+        self._note(partial(self.seen.take_block, unit, block))
 
     def _take_event(self, data: bytes) -> None:
         event = convert.message_to_event(deserialize_message(data, msg.Event))
-        self.seen.take_event(event)
+        self._note(partial(self.seen.take_event, event))
         for jogging in self._jogs.values():
             jogging.take_event(event)
 
     def _take_record(self, data: bytes) -> None:
         record = convert.message_to_record(deserialize_message(data, msg.CommandRecord))
+        self._note(partial(self.seen.take_record, record))
         if record.command == JOG and record.target in self._jogs:
             self._jogs[record.target].take_record(record)
+
+    def _note(self, take: Callable[[], None]) -> None:
+        """Something that has come is seen now, or when the PLC cycle of the program has ended."""
+        with self._image:
+            if self._is_held:
+                self._later.append(take)
+            else:
+                take()
 
     def _after(self, client: MachineClient) -> None:
         """After each look for what has come."""
@@ -153,18 +168,38 @@ class GraphLink(Link):
             self._jogs[axis] = Jogging(axis, client.get_name(), JogSender(client, axis))
         return self._jogs[axis].ask(client, f"axis {axis}: {JOG}", velocity, self.seen.cycle)
 
+    def parameters_of(self, unit: str) -> ParameterSet:
+        """Its node has them all; they are asked for once."""
+        if unit not in self._parameters:
+            given = self._thread.call(partial(MachineClient.parameters_of, unit=unit)).result()
+            self._parameters[unit] = given_set(unit, self.kinds[unit], given)
+        return self._parameters[unit]
+
     # time
 
     @property
     def now(self) -> float:
         return time.monotonic()
 
+    def hold(self) -> None:
+        with self._image:
+            self._is_held = True
+
+    def release(self) -> None:
+        with self._image:
+            self._is_held = False
+            for take in self._later:
+                take()
+            self._later.clear()
+
     def turn(self, timeout: float) -> None:
+        self.release()
         with self._changed:
             self._changed.wait(min(timeout, LONGEST_TURN))
         self._require_machine()
 
     async def turn_async(self, timeout: float) -> None:
+        self.release()
         loop = asyncio.get_running_loop()
         future = loop.create_future()
         self._sleepers.append((loop, future))
@@ -279,6 +314,13 @@ def ask(unit: str, command: str, arguments: Mapping[str, Any], client: MachineCl
     answer = client.ask(unit, command, arguments)
     values = read_values(answer.values_json)
     return Reply(answer.cycle, 0 if answer.accepted else answer.error_id, answer.message, values, answer.job)
+
+
+def given_set(unit: str, kind: str, values: Mapping[str, Any]) -> ParameterSet:
+    """The parameters of a unit as its node has told them."""
+    place = Place(f"node /{unit}", 0, 0)
+    given = {name: Given(tuple(value) if isinstance(value, list) else value, place) for name, value in values.items()}
+    return ParameterSet(unit, kind, place, given)
 
 
 def wake(future: asyncio.Future[None]) -> None:

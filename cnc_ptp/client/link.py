@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 from cnc_ptp.client.observations import Observations
 from cnc_ptp.errors import Value
 from cnc_ptp.interrupt import HeldSignals
+from cnc_ptp.parameters import ParameterSet
 from cnc_ptp.protocol.blocks import CommandRecord
 
 
@@ -55,6 +56,16 @@ class Link(ABC):
     @abstractmethod
     def answer(self, ticket: int) -> Reply | None:
         """The answer, once; None while it has not come. Raises CncError when none will."""
+
+    @abstractmethod
+    def parameters_of(self, unit: str) -> ParameterSet:
+        """As the machine file has them. Raises CncError 26136."""
+
+    def hold(self) -> None:  # noqa: B027  # offline nothing comes between two turns
+        """What comes is not seen before `release` or the next turn: all function blocks of a PLC cycle see the same."""
+
+    def release(self) -> None:  # noqa: B027
+        """What has come since `hold` is seen."""
 
     @abstractmethod
     def turn(self, timeout: float) -> None:

@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 
 from cnc_ptp.client.faults import unknown_unit
 from cnc_ptp.client.link import Link
+from cnc_ptp.client.plc_cycles import PlcCycles
 from cnc_ptp.client.session import Session
 from cnc_ptp.client.stream import Stream
 from cnc_ptp.client.units import UNITS, Axis, Channel, Plc, Spindle, Unit
@@ -148,6 +149,14 @@ class Machine:
     def _time_is(self, seconds: float) -> Callable[[], bool]:
         end = self.cycle + round(seconds / self.cycle_time)
         return lambda: self.cycle >= end
+
+    def plc_cycles(self, duration: float | None = None) -> PlcCycles:
+        """The PLC cycles (cycle blocks) for function blocks: `for _ in m.plc_cycles():`, or `async for`.
+
+        The first one comes at once. `duration` in s of the machine; None: without an end, but offline CncError 26174
+        where nothing has moved for 10 s. Raises as `Job.wait`.
+        """
+        return PlcCycles(self._session, duration)
 
     def wait_until(self, condition: Callable[[], bool], timeout: float | None = None) -> None:
         """Waits until the condition is true; it is asked with every block. Raises as `Job.wait`."""

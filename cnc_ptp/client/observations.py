@@ -2,12 +2,24 @@
 
 from __future__ import annotations
 
+import json
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Generic, NamedTuple, TypeVar
 from weakref import WeakSet
 
-from cnc_ptp.protocol.blocks import ChannelBlock, CycleBlock, Event, HandshakeRequest, JobEvent, PlcBlock, Severity
+from cnc_ptp.parameters.declare.declarations import ParameterValue
+from cnc_ptp.plc.program.references import WRITE_PARAMETER
+from cnc_ptp.protocol.blocks import (
+    ChannelBlock,
+    CommandRecord,
+    CycleBlock,
+    Event,
+    HandshakeRequest,
+    JobEvent,
+    PlcBlock,
+    Severity,
+)
 from cnc_ptp.protocol.jobs import JobStatus
 from cnc_ptp.protocol.unit import PLC
 
@@ -45,6 +57,7 @@ class Observations:
         self._jobs: dict[str, dict[int, JobEvent]] = {unit: {} for unit in names}
         self._faults: dict[str, deque[Event]] = {unit: deque(maxlen=FAULTS_KEPT) for unit in names}
         self._gaps: dict[str, int] = {}
+        self._written: dict[str, dict[str, ParameterValue]] = {unit: {} for unit in names}
         self._block_readers: dict[str, WeakSet[Mailbox[CycleBlock]]] = {unit: WeakSet() for unit in names}
         self._event_readers: WeakSet[Mailbox[Event]] = WeakSet()
 
@@ -77,7 +90,17 @@ class Observations:
         for reader in [*self._event_readers]:
             reader.items.append(event)
 
+    def take_record(self, record: CommandRecord) -> None:
+        """A command that was carried out or refused, whoever has given it."""
+        if record.command == WRITE_PARAMETER and record.accepted and record.target in self._written:
+            arguments = json.loads(record.arguments_json)
+            self._written[record.target][arguments["parameter"]] = arguments["value"]
+
     # what is asked
+
+    def written(self, unit: str) -> Mapping[str, ParameterValue]:
+        """Parameters of a unit that were written at run time, by P number."""
+        return self._written[unit]
 
     def job_event(self, unit: str, job: int) -> JobEvent | None:
         """The last that is known of a job; None before it has begun."""

@@ -17,7 +17,7 @@ from cnc_ptp.machine.command_files import with_program
 from cnc_ptp.machine.offline import STUCK_TIME
 from cnc_ptp.machine.wiring import build_units, unit_kinds
 from cnc_ptp.nodes.unit.requests import RUN_OVER
-from cnc_ptp.parameters import machine_text, read_machine
+from cnc_ptp.parameters import ParameterSet, machine_text, read_machine
 from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.protocol.blocks import Command, CommandRecord, PlcBlock
 from cnc_ptp.protocol.commands import BAD_ARGUMENT, NEEDS_SOMETHING, THROUGH_PLC
@@ -80,6 +80,9 @@ class OfflineLink(Link):
 
     def answer(self, ticket: int) -> Reply | None:
         return self._replies.pop(ticket, None)
+
+    def parameters_of(self, unit: str) -> ParameterSet:
+        return self._parameters.sets[unit]
 
     @property
     def _plc(self) -> PlcUnit:
@@ -152,6 +155,8 @@ class OfflineLink(Link):
             for event in output.events:
                 self.seen.take_event(event)
             self.seen.take_block(name, output.block)
+            for record in output.records:
+                self.seen.take_record(record)
             if self._asked:
                 self._take_answers(output.records)
         plc = outputs[PLC].block

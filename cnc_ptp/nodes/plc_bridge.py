@@ -18,6 +18,7 @@ from cnc_ptp.machine.silence import Silence
 from cnc_ptp.machine.wiring import build_unit
 from cnc_ptp.nodes import node_command_line, process
 from cnc_ptp.nodes.bridge.coupling_services import CouplingServices
+from cnc_ptp.nodes.bridge.function_blocks import FunctionBlockActions
 from cnc_ptp.nodes.bridge.hli.emergency_stop import EmergencyStopTopics
 from cnc_ptp.nodes.bridge.hli.hli_topics import HliTopics
 from cnc_ptp.nodes.bridge.jog_topics import PATIENCE as JOG_PATIENCE
@@ -53,7 +54,8 @@ class PlcBridgeNode(UnitNode):
     /<axis|spindle>/enable (Switch), /<axis>/feed_release (FeedRelease), /<axis>/external_setpoint (ExternalSetpoint),
     /<axis>/jog (Jog), /plc/life_sign (LifeSign), /<unit>/hli/control (<Kind>HliControl), /emergency_stop (Bool).
     Services besides: /emergency_stop/press, release, reset (std_srvs/Trigger).
-    /trajectory/joint_trajectory (JointTrajectory). Action: /trajectory/follow_joint_trajectory (FollowTrajectory).
+    Actions: /trajectory/follow_joint_trajectory (FollowTrajectory), beside the topic /trajectory/joint_trajectory;
+    /<axis|spindle>/function_block (FunctionBlock); cancel = halt.
     A jog ends when its messages stop. Of overrides, switches and releases a value counts when it changes; the last one
     holds when messages stop; `valid` = false means 100 %, no feed hold, enabled, released, and has no effect on a topic
     that was never valid. An override of a spindle that came in a rhythm and falls silent is an event. A life sign that
@@ -91,6 +93,7 @@ class PlcBridgeNode(UnitNode):
         self._joints_due = 0
         self._answers: CouplingServices | None = None
         self._trajectories: TrajectoryServer | None = None
+        self._function_blocks: FunctionBlockActions | None = None
 
     def setup(self) -> None:
         """As UnitNode, with the topics of the PLC, couplings and joint states."""
@@ -106,6 +109,7 @@ class PlcBridgeNode(UnitNode):
         self._answers = CouplingServices(self, self.plc, list(self._machine.axes))
         SetpointServices(self, self.plc, self._machine.axes)
         self._trajectories = TrajectoryServer(self, self.plc, self._machine)
+        self._function_blocks = FunctionBlockActions(self, self.plc, self._kinds, self._machine)
         self._joints = JointStates(self, self._machine)
 
     def _listen(self, unit: str, name: str) -> None:
@@ -164,6 +168,8 @@ class PlcBridgeNode(UnitNode):
             self._answers.end()
         if self._trajectories is not None:
             self._trajectories.end()
+        if self._function_blocks is not None:
+            self._function_blocks.end()
 
     def destroy_node(self) -> None:
         self.run_ended()
@@ -176,6 +182,8 @@ class PlcBridgeNode(UnitNode):
         if self._trajectories is not None:
             self._trajectories.after_block(block)
         self._emergency_stop.show()
+        if self._function_blocks is not None:
+            self._function_blocks.after_block()
         if not self._state_period or block.first_cycle < max(self._joints_due, 1):
             return
         self._joints_due = block.first_cycle + self._state_period

@@ -86,6 +86,7 @@ SERVICES: dict[str, dict[str, Any]] = {
         "set_feedforward": srv.SetFeedforward,
         "reset_feedforward": srv.Execute,
         "set_friction_compensation": srv.SetSwitch,
+        "write_parameter": srv.WriteParameter,
         "read_drive_parameter": srv.ReadDriveParameter,
         "write_drive_parameter": srv.WriteDriveParameter,
     },

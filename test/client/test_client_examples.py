@@ -117,8 +117,8 @@ def test_the_code_of_the_document_runs(tmp_path: Path, monkeypatch: pytest.Monke
             names["m"] = m
             m.x.move_absolute(5).wait()
         names["test_the_tool_is_changed_above_the_part"](m)
-    assert len(blocks) == 5
-    assert {"100.0", "T 1", "M 6"} <= {*out.getvalue().splitlines()}
+    assert len(blocks) == 6
+    assert {"100.0", "T 1", "M 6", "True True 20.0", "True"} <= {*out.getvalue().splitlines()}
 
 
 def run_block(block: str, names: dict[str, object]) -> None:
@@ -153,7 +153,9 @@ def mypy(script: Path) -> str:
 TYPED = """
 import asyncio
 
-from cnc_ptp.client import AxisState, CncError, HandshakeRequest, Job, Machine, ProgramJob
+from cnc_ptp.client import (
+    AxisState, CncError, HandshakeRequest, Job, Machine, MC_MoveAbsolute, MC_MoveVelocity, ProgramJob
+)
 
 
 def peak(m: Machine) -> float:
@@ -185,4 +187,9 @@ with Machine.offline("config/mill.yaml", record="a.mcap") as m:
     except CncError as error:
         print(error.number, error.values)
     asyncio.run(both(m))
+    move, turn = MC_MoveAbsolute(m.axes["x"]), MC_MoveVelocity(m.spindles["s"])
+    for cycle in m.plc_cycles(duration=1.0):
+        move(cycle > 100, position=5.0)
+        turn(move.done, velocity=60.0)
+        print(turn.in_velocity, move.error_text)
 """

@@ -8,14 +8,15 @@ import subprocess
 import sys
 import threading
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from client_stories import EXPECTED, refusal, story
+from client_stories import BLOCKS_EXPECTED, EXPECTED, block_story, refusal, story
 from graph_support import verified
 from machine_support import ROOT
 
-from cnc_ptp.client import AxisStateCode, ChannelStateCode, CncError, JobStatus, Machine, UnknownUnit
+from cnc_ptp.client import AxisStateCode, ChannelStateCode, CncError, JobStatus, Machine, MC_MoveAbsolute, UnknownUnit
 from cnc_ptp.recording.reader import read_recording
 
 MILL = ROOT / "config" / "mill.yaml"
@@ -42,6 +43,57 @@ def test_the_story_is_recorded_and_replays_to_the_bit(tmp_path: Path) -> None:
     refused = next(record for record in recorded.commands if record.error_id == 120002)
     assert refused.values == {"target": 100000.0, "limit": 300.0} and refused.job == 0
     assert [record.job for record in recorded.commands if record.command == "start" and record.target == "s"] == [1]
+
+
+def test_function_blocks_in_plc_cycles_replay_to_the_bit(tmp_path: Path) -> None:
+    with Machine.offline(MILL, record=tmp_path / "a.mcap") as m:
+        assert block_story(m) == BLOCKS_EXPECTED
+    verified(tmp_path / "a.mcap")
+
+
+def test_plc_cycles_are_the_blocks(m: Machine) -> None:
+    assert [*m.plc_cycles(duration=0.03)] == [10, 20, 30] and m.cycle == 40
+    for cycle in m.plc_cycles():
+        if cycle == 60:
+            break
+    assert m.cycle == 60
+
+    async def three() -> list[int]:
+        return [cycle async for cycle in m.plc_cycles(0.03)]
+
+    assert asyncio.run(three()) == [60, 70, 80]
+    number, text, _ = refusal(lambda: [*m.plc_cycles()])
+    assert (number, text) == (
+        26174,
+        "plc_cycles: no end: nothing has moved for 10 s of machine time, and nothing will; it ends",
+    )
+
+
+def test_a_function_block_of_a_unit_that_does_not_have_its_command(m: Machine) -> None:
+    move = MC_MoveAbsolute(m.s)
+    for _ in m.plc_cycles(0.02):
+        move(True, position=1.0)
+    assert move.error and move.error_id == 22002
+    assert move.error_text.startswith("spindle s: unknown command 'move_absolute'")
+
+
+def test_a_job_whose_end_is_not_seen_is_an_error_of_its_block(m: Machine) -> None:
+    move = MC_MoveAbsolute(m.x)
+    for cycle in m.plc_cycles():
+        move(True, position=50.0)
+        if cycle >= 50:
+            break
+    seen = m._session.link.seen
+    seen.take_block("x", replace(seen.blocks["x"], first_cycle=5000, job=0, job_events=[]))
+    move(True)
+    assert (move.error, move.error_id) == (True, 26175)
+
+
+def test_no_function_block_after_the_end() -> None:
+    with Machine.offline(MILL) as m:
+        move = MC_MoveAbsolute(m.x)
+    number, text, _ = refusal(lambda: move(True, position=1.0))
+    assert (number, text) == (26172, "axis x: move_absolute: the machine was closed; nothing was sent")
 
 
 def test_two_runs_are_equal_to_the_bit(tmp_path: Path) -> None:

@@ -11,10 +11,10 @@ import time
 
 import psutil
 import pytest
-from client_stories import EXPECTED, refusal, setpoints, story
+from client_stories import BLOCKS_EXPECTED, EXPECTED, block_story, refusal, setpoints, story
 from graph_support import one_axis_machine, small_machine, verified, wait_until_gone
 
-from cnc_ptp.client import CncError, JobStatus, Machine
+from cnc_ptp.client import CncError, JobStatus, Machine, MC_ReadParameter
 from cnc_ptp.client.graph_link import GraphLink
 from cnc_ptp.client.session import Session
 from cnc_ptp.recording.reader import read_recording
@@ -73,6 +73,17 @@ def test_the_story_is_that_of_the_offline_machine_to_the_bit(ros_domain, mill, f
         verified(folder / f"{name}.mcap")
     topics = [{*read_recording(folder / f"{name}.mcap").states} for name in ("offline", "graph")]
     assert topics[0] == topics[1]
+
+
+def test_function_blocks_are_those_of_the_offline_machine(ros_domain, mill):
+    with Machine.offline(mill) as machine:
+        assert block_story(machine) == BLOCKS_EXPECTED
+    started = Machine.start(mill, composed=True, namespace="blocks")
+    with started, Machine.connect(namespace="blocks") as other:
+        assert block_story(other) == BLOCKS_EXPECTED
+        read = MC_ReadParameter(started.x)
+        read(True, "P-AXIS-00236")
+        assert read.value == 77.0  # as the other client has written it
 
 
 def test_a_second_start_on_the_domain_is_refused(m, mill, ros_domain):
@@ -283,7 +294,7 @@ def test_a_unit_that_says_nothing(m):
     text = "axis ghost: jog: no answer within 5 s; the jog was ended"
     assert refusal(lambda: session.ask("ghost", "jog", {"velocity": 1.0}))[:2] == (26136, text)
     link.seen.take_block = None
-    text = "the client has failed: TypeError(\"'NoneType' object is not callable\"); its units continue"
+    text = "the client has failed: TypeError('the first argument must be callable'); its units continue"
     assert refusal(lambda: session.run(session.until(lambda: False, 60.0, "-")))[:2] == (26171, text)
     assert refusal(lambda: session.ask("plc", "stop_all", {}))[0] == 26171
     link.close()

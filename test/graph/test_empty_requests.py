@@ -8,6 +8,7 @@ from rclpy.serialization import serialize_message
 from cnc_ptp import action, msg, srv
 from cnc_ptp.machine.wiring import build_unit
 from cnc_ptp.nodes import process
+from cnc_ptp.nodes.bridge.function_blocks import given_inputs
 from cnc_ptp.nodes.plc_bridge import PlcBridgeNode
 from cnc_ptp.nodes.topics import COUPLING_SERVICES, HLI_CONTROL, SERVICES
 from cnc_ptp.nodes.unit.requests import given_arguments, objection
@@ -32,6 +33,7 @@ REFUSED = {
     ("axis", "new_target"): "argument 'target' is missing",
     ("axis", "new_velocity_and_target"): "argument 'target' is missing",
     ("axis", "compensation_start"): "no basic motion is active (the axis is in Standstill)",
+    ("axis", "write_parameter"): "argument 'value' is missing",
     ("axis", "external_enable"): "mode = '' is not absolute or relative",
     ("axis", "set_coupling_factor"): "argument 'factor' is missing",
     ("axis", "set_cyclic_factor"): "argument 'factor' is missing",
@@ -151,6 +153,10 @@ def test_what_is_given_counts_for_spindles():
 )
 def test_an_empty_goal_has_no_target(goal, kind, command):
     assert given_arguments(COMMANDS[kind][command], goal.Goal()) == {}
+
+
+def test_an_empty_goal_has_no_inputs_of_a_function_block():
+    assert given_inputs(action.FunctionBlock.Goal(), "") == {}
 
 
 @pytest.mark.parametrize(

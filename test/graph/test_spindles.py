@@ -125,6 +125,28 @@ def test_an_override_that_falls_silent_stays_as_it_is(client):
     client.done("s", "stop", source="")
 
 
+def test_function_blocks_of_a_spindle(client):
+    """Rotation by one block, M19 by another, which aborts it."""
+
+    def begin(name, **inputs):
+        return client.action(action.FunctionBlock, "/s/function_block", function_block=name, **inputs)
+
+    turn, told = begin("MC_MoveVelocity", velocity=-120.0)
+    client.spin_until(lambda: any(message.feedback.in_velocity for message in told), "the speed")
+    assert told[-1].feedback.set_velocity == -120.0
+    orient, _ = begin("MC_OrientSpindle", position=90.0, direction="ccw")
+    status, result = client.result_of(turn)
+    assert (status, result.command_aborted) == (GoalStatus.STATUS_ABORTED, True)
+    status, result = client.result_of(orient)
+    assert (status, result.done) == (GoalStatus.STATUS_SUCCEEDED, True)
+    refused, _ = begin("MC_MoveAbsolute", position=1.0)
+    _, result = client.result_of(refused)
+    assert result.error_id == 22002
+    assert result.error_text.startswith(
+        "spindle s: unknown function block 'MC_MoveAbsolute'; nothing was changed. Known: "
+    )
+
+
 def test_positioning_and_homing_as_actions(client):
     goal, _ = client.action(action.OrientSpindle, "/s/position", position_deg=222.0, speed_rpm=120.0, direction="cw")
     status, result = client.result_of(goal)

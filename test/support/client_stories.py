@@ -6,7 +6,22 @@ from pathlib import Path
 
 import numpy as np
 
-from cnc_ptp.client import CncError, JobStatus, Machine
+from cnc_ptp.client import (
+    CncError,
+    JobStatus,
+    Machine,
+    MC_GearIn,
+    MC_GearOut,
+    MC_Halt,
+    MC_MoveAbsolute,
+    MC_MoveRelative,
+    MC_MoveVelocity,
+    MC_OrientSpindle,
+    MC_Power,
+    MC_ReadParameter,
+    MC_Stop,
+    MC_WriteParameter,
+)
 from cnc_ptp.recording.reader import Recorded, read_recording
 
 PART = "%part\nN10 G90 G17 G54\nN20 G0 X10 Y5\nN30 G1 X40 F6000\nN40 M8\nN50 G2 X50 Y15 I0 J10\nN60 M9\nN70 M30\n"
@@ -77,6 +92,85 @@ EXPECTED = [
     (23043, "axis y: couple refused: factor = 0 must be different from 0; nothing was changed", {"argument": "factor", "value": 0.0}),
     26110,
     (22001, "spindle s: set_limits refused: nothing is given; reset_limits takes the limits away; nothing was changed", {}),
+]  # fmt: skip
+
+
+def block_story(m: Machine) -> list[object]:
+    """Function blocks in PLC cycles: a motion, one that another aborts, a coupling, refusals, a spindle, parameters."""
+    seen: list[object] = []
+    power, first, second, halt = MC_Power(m.x), MC_MoveAbsolute(m.x), MC_MoveAbsolute(m.x), MC_Halt(m.x)
+    for _ in m.plc_cycles():
+        power(True)
+        first(power.status, position=60.0, velocity=100.0)
+        if first.done:
+            break
+    seen += [power.valid, outputs(first), m.x.state.set_position]
+    first(False)
+    rows: list[tuple[str, str]] = []
+    for _ in m.plc_cycles():
+        first(not rows, position=200.0, velocity=20.0)
+        second(first.active or second.busy, position=0.0, velocity=100.0)
+        rows.append((outputs(first), outputs(second)))
+        if second.done:
+            break
+    seen += [[*dict.fromkeys(rows)], m.x.state.set_position]
+    gear, move, out = MC_GearIn(m.y), MC_MoveRelative(m.x), MC_GearOut(m.y)
+    for _ in m.plc_cycles():
+        gear(True, master=m.x, ratio_numerator=1.0, ratio_denominator=2.0)
+        move(gear.in_gear, distance=20.0)
+        out(move.done or out.execute)
+        if gear.command_aborted:
+            break
+    seen += [outputs(gear), outputs(out), m.y.state.set_position]
+    for inputs in ({"position": 1e5}, {"position": float("nan")}, {"position": 1.0, "buffer_mode": "later"}):
+        first(False)
+        for _ in m.plc_cycles():
+            first(True, **inputs)
+            if not first.busy:
+                break
+        seen.append((first.error, first.error_id, first.error_text))
+    turn, orient, stop = MC_MoveVelocity(m.s), MC_OrientSpindle(m.s), MC_Stop(m.s)
+    for _ in m.plc_cycles():
+        turn(True, velocity=-300.0)
+        orient(turn.in_velocity or orient.busy or orient.done, position=90.0)
+        stop(orient.done)
+        halt(False)
+        if stop.done:
+            break
+    seen += [outputs(turn), outputs(orient), m.s.stops]
+    stop(False)
+    read, write, bad = MC_ReadParameter(m.x), MC_WriteParameter(m.x), MC_ReadParameter(m.x)
+    read(True, "P-AXIS-00236")
+    seen.append(read.value)
+    for _ in m.plc_cycles():
+        write(True, parameter="P-AXIS-00236", value=77.0)
+        read(True, "P-AXIS-00236")
+        if write.done and read.value == 77.0:
+            break
+    bad(True, "P-AXIS-99999")
+    return [*seen, m.s.stops, (bad.error_id, bad.error_text)]
+
+
+def outputs(block) -> str:
+    names = ("busy", "active", "done", "command_aborted", "error")
+    return " ".join(name for name in names if getattr(block, name))
+
+
+BLOCKS_EXPECTED = [
+    True, "done", 60.0,
+    [
+        ("busy", ""),
+        ("busy active", "busy"),
+        ("command_aborted", "busy active"),
+        ("", "busy active"),
+        ("", "done"),
+    ], 0.0,
+    "command_aborted", "done", 10.0,
+    (True, 120002, "axis x: move_absolute refused: target 100000.0 mm lies beyond the positive soft limit 300.0 mm (P-AXIS-00178); nothing was changed"),
+    (True, 22001, "axis x: move_absolute refused: target = nan is not finite; nothing was changed"),
+    (True, 22001, "axis x: move_absolute refused: buffer_mode = 'later' is not aborting or buffered or blending_low or blending_previous or blending_next or blending_high; nothing was changed"),
+    "command_aborted", "done", 1,
+    500, 0, (22169, "axis /x has no parameter 'P-AXIS-99999'; nothing was read"),
 ]  # fmt: skip
 COMPARED = {
     "x": ("set_position", "set_velocity", "set_acceleration", "set_jerk"),

@@ -10,10 +10,11 @@ from itertools import count
 from typing import Any
 
 import rclpy
-from rcl_interfaces.srv import GetParameters
+from rcl_interfaces.srv import GetParameters, ListParameters
 from rclpy.client import Client
 from rclpy.context import Context
 from rclpy.experimental import EventsExecutor
+from rclpy.parameter import parameter_value_to_python
 
 from cnc_ptp.errors import CncError, nearest_name
 from cnc_ptp.machine.wiring import UNKNOWN_UNIT
@@ -102,6 +103,18 @@ class MachineClient(PollingNode):
         answer = self._answer(client, GetParameters.Request(names=names), patience)
         self.destroy_client(client)
         return None if answer is None else answer.values
+
+    def parameters_of(self, unit: str) -> dict[str, Any]:
+        """All parameters of a unit by ROS name, as the machine file has them. Raises CncError 26136."""
+        client: Client[Any, Any] = self.create_client(ListParameters, f"{unit}/list_parameters")
+        listed = self._answer(client, ListParameters.Request(), PATIENCE)
+        self.destroy_client(client)
+        names = [] if listed is None else [*listed.result.names]
+        values = self._parameters_of(unit, names) if listed is not None else None
+        if values is None:
+            text = f"{self.kinds[unit]} {unit}: its parameters: no answer within {PATIENCE:g} s"
+            raise CncError(NO_ANSWER, text, "nothing was read")
+        return dict(zip(names, map(parameter_value_to_python, values), strict=True))
 
     def require_unit(self, unit: str, kinds: Iterable[str] = ()) -> str:
         """Its kind. Raises CncError 26111 when the machine has no such unit."""
