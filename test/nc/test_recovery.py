@@ -5,6 +5,7 @@ import pytest
 from cnc_ptp.nc.canonical import Source
 from cnc_ptp.nc.check import check
 from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.nc.iso.vocabulary import ISO
 from cnc_ptp.nc.plain_channel import plain_channel
 from cnc_ptp.nc.recovery import DEPENDS, ENOUGH, READS
 from cnc_ptp.parameters import Tool, ToolTable
@@ -17,6 +18,12 @@ def found(text: str, **options) -> list[tuple[int, int, str]]:
     return [
         (error.number, error.line, error.unchecked) for error in check(text, "a.nc", plain_channel(AXES), **options)
     ]
+
+
+def found_iso(text: str) -> list[tuple[int, int, str]]:
+    """The same in the vocabulary iso."""
+    channel = plain_channel(AXES)._replace(vocabulary=ISO)
+    return [(error.number, error.line, error.unchecked) for error in check(text, "a.nc", channel)]
 
 
 def test_independent_errors_of_blocks_are_all_found() -> None:
@@ -58,6 +65,43 @@ def test_what_is_not_closed_is_the_only_error_of_its_lines(begin: str) -> None:
 
 def test_behind_a_line_that_cannot_be_read_the_check_goes_on() -> None:
     assert found("G01 X10 F100\nG01 X20 Q5\nX[1/0]\nM30") == [(20797, 2, ""), (20396, 3, "")]
+
+
+@pytest.mark.parametrize(
+    "line", ["G77 (P2)", "G77 (see #5)", "G77 ; drill P5 M30", "G77 (%) X1", "G77 X=P1", "G77 X = P1"]
+)
+def test_comments_and_parameters_that_are_read_decide_nothing(line: str) -> None:
+    assert found(f"P1 = 1\n{line}\nM77 A1\nM30") == [(20131, 2, ""), (20797, 3, "")]
+
+
+@pytest.mark.parametrize("line", ["G77 P1 = 5", "G77 (X) LL SUB", "G77 V.P.A = 5", "G77 )P1", "#VR", "#ERROR [FOO=1]"])
+def test_a_line_that_cannot_be_read_and_may_decide_ends_the_check(line: str) -> None:
+    ((_, line_of_error, unchecked),) = found(f"{line}\nX[1/0]\nM30")
+    assert (line_of_error, unchecked) == (1, DEPENDS)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        *("#HSC ON [FOO=3]", '#MSG ["%n"]', "N10 #HSC ON [FOO=P1]", "#SCALE ONN X2", "#ROTATION ON [FOO=1]"),
+        *("#TIMER", "#TIMER FOO", "#SLOPE [TYPE=SIN2] X", "#TOOL DATA X", "#CONTOUR MODE [FOO]", "#CS ON [FOO]"),
+    ],
+)
+def test_a_command_that_sets_no_value_decides_nothing(line: str) -> None:
+    """Its faulty arguments end no check."""
+    (_, first, unchecked), second = found(f"P1 = 1\n{line}\nX[1/0]\nM30")
+    assert (first, unchecked, second) == (2, "", (20396, 3, ""))
+
+
+@pytest.mark.parametrize("line", ["G77 X5 P1", "G77 (M30)", "G77 ; M99 O1", "G0 X#1", "G77 L2"])
+def test_words_of_iso_that_decide_nothing(line: str) -> None:
+    (_, first, unchecked), second = found_iso(f"{line}\nG0 A1\nM30")
+    assert (first, unchecked, second) == (1, "", (20797, 2, ""))
+
+
+@pytest.mark.parametrize("line", ["G77 M98 P5", "G77 M30", "N5 O100 SUB", "G77 M099", "IF [#1 EQ 0] GOTO 5"])
+def test_words_of_iso_that_decide_which_lines_follow(line: str) -> None:
+    assert [found_[1:] for found_ in found_iso(f"G21\n{line}\nG0 A1\nM30")] == [(2, DEPENDS)]
 
 
 @pytest.mark.parametrize(

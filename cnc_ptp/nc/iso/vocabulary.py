@@ -6,6 +6,7 @@ from cnc_ptp.nc import feeds, functions, measuring, motions, transitions, turnin
 from cnc_ptp.nc.coordinates import codes
 from cnc_ptp.nc.iso import cycles, lengths, offsets
 from cnc_ptp.nc.iso import motions as own
+from cnc_ptp.nc.iso.comments import without_comments
 from cnc_ptp.nc.modal_state import ModalState
 from cnc_ptp.nc.program import GCode, MCode, Vocabulary
 from cnc_ptp.nc.radius import radius_codes
@@ -120,6 +121,8 @@ ISO: Final = Vocabulary(
     value_words=frozenset("FSTDHIJKLPQR"),
     function_words=frozenset("ST"),
     free_m=functions.free_m,
+    decides=r"[%O]|M\s*0*(?:2|30|98|99)(?![\d.])",
+    without_comments=without_comments,
     further_paths=(NO_MOTION,),
     careful_words=frozenset("DHLPQ"),
     first_offset=FIRST_OFFSET,
