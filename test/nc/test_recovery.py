@@ -148,3 +148,18 @@ def test_an_ordered_warning_is_none() -> None:
 
 def test_an_ordered_error_behind_what_only_the_run_knows_is_not_reported() -> None:
     assert found("P1 = V.A.ACT_POS.X\n#ERROR [ID=455]\nM30") == []
+
+
+@pytest.mark.parametrize("line", ["G41 G0 X1", "G42\nG01 X1 F100", "G41 G02 X1 Y1 R9 F100"])
+def test_behind_a_contour_without_a_tool_the_check_goes_on_as_with_g40(line: str) -> None:
+    last = 1 + line.count("\n")
+    text = f"{line}\nX[1/0]\nG18\nG40 G02 Y5 Z5 R9 F100\nA1\nM30"
+    assert found(text) == [(21683, last, ""), (20396, last + 1, ""), (20797, last + 4, "")]
+
+
+def test_each_contour_without_a_tool_is_shown() -> None:
+    """The radius that D says is not there is missed by the second one, too; the third one has it."""
+    channel = plain_channel(AXES)._replace(tools=ToolTable({1: Tool(radius=1.0)}, True))
+    text = "G41 G01 X5 F100\nY5\nG40 X9\nG42 X0\nY0\nD9\nD1\nG41 X5\nG03 X6 Y1 R0.8\nG40 G01 X20\nM30"
+    errors = [(error.number, error.line, error.unchecked) for error in check(text, "a.nc", channel)]
+    assert errors == [(21683, 1, ""), (21683, 4, ""), (20296, 6, ""), (90017, 9, DEPENDS)]
