@@ -7,6 +7,7 @@ from cnc_ptp.nc.check import check
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.iso.vocabulary import ISO
 from cnc_ptp.nc.plain_channel import plain_channel
+from cnc_ptp.nc.program import Channel, Spindle, SpindleTable
 from cnc_ptp.nc.recovery import DEPENDS, ENOUGH, READS
 from cnc_ptp.parameters import Tool, ToolTable
 
@@ -55,6 +56,48 @@ def test_a_plane_that_was_left_out_is_missed_by_nobody() -> None:
 )
 def test_an_error_that_a_line_has_by_itself_is_shown_behind_another_one(line: str, number: int) -> None:
     assert found(f"G01 X10 F-5\n{line}\nM30") == [(21022, 1, ""), (number, 2, "")]
+
+
+LIMITED = SpindleTable((Spindle("S", "S", limits=(4000.0,)), Spindle("S2", "S2", 2, limits=(800.0, 2000.0))), "S")
+"""S with one maximum, S2 with one for each of two gears."""
+
+
+def limited(axes: str = "XYZ") -> Channel:
+    return plain_channel(axes, LIMITED)
+
+
+@pytest.mark.parametrize(
+    ("line", "number"),
+    [
+        ("M3 S99999", 22010),
+        ("G1 X5 F0", 20008),
+        ("G01 F0 X5", 20008),
+        ("G63 Z-5 F0 S100", 21643),
+        ("G63 Z-5 F100 S0", 21644),
+        ("G63 Z-5 F100 S100 K2", 21648),
+        ("G63 Z-5 S100 S2=50 F100", 21655),
+        ("G63 Z-5 S9999 F100", 22010),
+        ("G00 X5 J3", 21013),
+        ("#MAIN SPINDLE [77]", 21306),
+    ],
+)
+def test_an_error_of_what_the_line_itself_says_is_shown_behind_another_one(line: str, number: int) -> None:
+    errors = check(f"G77\n{line}\nM30", "a.nc", limited())
+    assert [(error.number, error.line) for error in errors] == [(20131, 1), (number, 2)]
+
+
+def test_a_plane_in_the_line_itself_that_the_machine_lacks_is_shown() -> None:
+    errors = check("G77\nG17 G02 X5 R5 F100\nM30", "a.nc", limited("XZ"))
+    assert [(error.number, error.line) for error in errors] == [(20131, 1), (21031, 2)]
+
+
+@pytest.mark.parametrize(
+    "line", ["G01 X5", "X5 F0", "G63 Z-5 S100", "G63 Z-5 F100", "G63 Z-5 F100 K1", "J3 X5", "S2[M3 REV1000]"]
+)
+def test_it_is_not_shown_where_the_block_that_was_left_out_may_have_said_the_rest(line: str) -> None:
+    """A feed, a speed, the path function, a gear."""
+    text = f"G01 X1 F100\nM3 S10\nM5\nS0 F0\nG77\n{line}\nM30"
+    assert [(error.number, error.line) for error in check(text, "a.nc", limited())] == [(20131, 5)]
 
 
 @pytest.mark.parametrize("begin", ["#COMMENT BEGIN", "#VAR"])
