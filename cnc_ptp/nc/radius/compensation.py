@@ -157,7 +157,7 @@ class RadiusCompensation:
             yield from self._carried_out(entry, motion)
 
     def _begin_contour(self, entry: Entry) -> Iterator[CanonicalBlock]:
-        """Behind an error a check goes on as with G40: no contour of this G41 or G42 can be checked."""
+        """Behind an error a check continues as with G40: no contour of this G41 or G42 can be checked."""
         try:
             self._engage(entry.block)
         except ProgramError as error:
