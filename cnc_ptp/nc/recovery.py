@@ -4,6 +4,7 @@ What a block that is left out would have changed is unknown. So errors that may 
 shown (FOLLOW), and the check ends at a line that reads the state (V.A., V.G., V.SPDL_PROG.).
 """
 
+import re
 from typing import Final
 
 from cnc_ptp.nc import faults, spindle_faults
@@ -64,6 +65,11 @@ WRITTEN: Final[dict[int, tuple[str, ...]]] = {
 
 The maximum of a gear is no word, so it follows from the line that selected the gear.
 """
+CAUSES_NOTHING: Final = re.compile(
+    r"\s*(?:/\s*\d*\s*)?(?:N\s*\d+\s*:?\s*)?#\s*(?:CONTOUR|EXPL|FLUSH|HSC|MSG|SLOPE|TIMER)(?![A-Z])",
+    re.ASCII | re.IGNORECASE,
+)
+"""Lines without which no other one has an error: they change neither positions nor feed nor spindles."""
 DEPENDS: Final = "what follows depends on it"
 ENOUGH: Final = f"{MOST_ERRORS} errors are enough"
 READS: Final = "what follows reads a state that is not known behind a block with an error"
@@ -83,7 +89,7 @@ class Recovery:
         self._noted: list[ProgramError] = []
         """Errors of the block that comes next."""
         self._skipped = False
-        """Blocks have been left out."""
+        """Blocks have been left out that may cause errors of others."""
 
     def note(self, error: ProgramError) -> None:
         """An error that changes nothing for what follows: its block is executed; one position counts once."""
@@ -113,7 +119,8 @@ class Recovery:
             state.take_over(before)
             execution.moved = False
         state.spindle.speedless.clear()
-        self._skipped = execution.uncertain = True
+        execution.uncertain = True
+        self._skipped = self._skipped or CAUSES_NOTHING.match(error.source.text) is None
         return len(self.errors) < MOST_ERRORS
 
     def ends_with(self, error: ProgramError) -> None:

@@ -177,6 +177,22 @@ def test_positions_beyond_a_limit_count_once_and_the_path_goes_on_from_there() -
     assert found(text, check_target=within) == [(120002, 1, ""), (120002, 3, ""), (20008, 5, "")]
 
 
+@pytest.mark.parametrize(
+    ("line", "shown"),
+    [
+        *(("#HSC ON [FOO=3]", True), ('N10 #msg ["%n"]', True), ("#SLOPE [TYPE=FOO]", True), ("#TIMER", True)),
+        *(("#CONTOUR MODE [FOO]", True), ("#SCALE ON X0", False), ("#CS ON [FOO]", False), ("G77", False)),
+    ],
+)
+def test_a_soft_limit_is_shown_behind_what_changes_no_positions(line: str, shown: bool) -> None:
+    def within(target: tuple[float, ...], source: Source) -> None:
+        if target[0] > 100.0:
+            raise ProgramError(120002, f"X {target[0]:g}", source, 1)
+
+    errors = found(f"{line}\nG00 X500\nM30", check_target=within)
+    assert [error[1] for error in errors] == ([1, 2] if shown else [1])
+
+
 def test_an_ordered_error_that_is_reached_is_an_error() -> None:
     text = "%L DEEP\n#ERROR [ID=455 PV1=P1]\nM29\n%\nP1 = 2\n$IF P1 > 1\nLL DEEP\n$ELSE\n#ERROR [ID=7]\n$ENDIF\nM30"
     (error,) = check(text, "a.nc", plain_channel(AXES))
