@@ -34,7 +34,7 @@ from cnc_ptp.nc.coordinates.codes import initial_state
 from cnc_ptp.nc.coordinates.coordinates import NO_CHANGES, OffsetChanges
 from cnc_ptp.nc.coordinates.limits import moving_axes, require_within
 from cnc_ptp.nc.expressions.values import Values, Variable, copies
-from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.nc.faults import M_NOT_THERE, ProgramError
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.measuring import measures
@@ -63,7 +63,6 @@ from cnc_ptp.protocol.blocks import CycleBlock, SpindleBlock
 from cnc_ptp.spindle.faults import NO_POSITION_VALUE, SENSORLESS
 
 NO_MEASURING_AXIS = 50059
-UNKNOWN_M_FUNCTION = 22011
 NO_ENCODER = 22081
 NOT_REFERENCED = 22034
 NO_CHANNEL = 26112
@@ -463,8 +462,8 @@ class ProgramCheck:
             return
         elif function.letter == "M" and function.number not in self._channel.m_functions:
             known = ", ".join(f"M{number}" for number in self._channel.m_functions)
-            text = f"M{function.number:02d} does not exist on this machine (P-CHAN-00041). Known: {known}"
-            raise ProgramError(UNKNOWN_M_FUNCTION, text, source, source.column(f"M{function.number}"))
+            column = source.column(f"M{function.number}")
+            raise M_NOT_THERE.at(source, column, word=f"M{function.number:02d}", known=known)
 
     def _compensation(self, function: CompensationSwitch, source: Source) -> None:
         """Raises ProgramError 70495 when friction compensation is switched on for an axis that does not permit it."""

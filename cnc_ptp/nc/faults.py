@@ -96,6 +96,7 @@ DUPLICATE_AXIS = Fault(20203, "axis {word} twice in one block: {first} and {seco
 UNKNOWN_G = Fault(20131, "unknown G function {word}")
 UNKNOWN_M = Fault(20160, "unknown M function {word}")
 SAME_GROUP = Fault(21012, "{first} and {second} belong to one group ({group}) and cannot be in one block")
+M_NOT_THERE = Fault(22011, "{word} does not exist on this machine (P-CHAN-00041). Known: {known}")
 LATER = Fault(21050, "{g} is not available yet: {what}")
 CODE_NO_VALUE = Fault(21052, "{code} takes no value")
 MACROS = Fault(21054, "{word} is no word: texts are values of expressions, macros are not available")

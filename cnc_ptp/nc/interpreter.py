@@ -61,7 +61,7 @@ def interpret(
         values.channel, values.state = channel, state
     execution = Execution(program, values, limits=channel.limits, block_skip=block_skip, search=search)
     resolver = BlockResolver(channel, state, check_target)
-    compensation = RadiusCompensation(channel, state, resolver.check_move, search, program.main.source)
+    compensation = RadiusCompensation(channel, state, resolver.check_move, search, program.main.source, recovery)
     yield from compensation.over(_programmed(execution, resolver, recovery, runs=runs))
 
 

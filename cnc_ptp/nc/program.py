@@ -1,10 +1,12 @@
 """Types between parser and interpreter: the rows of the vocabulary, the parsed blocks, the constants of a channel."""
 
+import re
 from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple
 
 from cnc_ptp.nc.canonical import CompensationSwitch, Function, Motion, Source, SpindleFeedforward, code_name
 from cnc_ptp.nc.contour import PATH_DEFAULTS, PathDefaults
+from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.modal_state import FacingAxis, ModalState, Pairs
 from cnc_ptp.nc.radius.radius_state import DEFAULT_SETTINGS, RadiusSettings
 from cnc_ptp.parameters import NO_OFFSET_TABLES, NO_TOOLS, OffsetTables, ToolTable
@@ -89,6 +91,8 @@ class Vocabulary:
     plain_names     their names
     plain_words     `words` without those that need the careful one
     first_offset    zero offset that is on at the start, 0: none
+
+    `decides`: pattern of what may decide which lines follow, or about values, in capitals without comments.
     """
 
     def __init__(
@@ -101,6 +105,8 @@ class Vocabulary:
         value_words: frozenset[str],
         function_words: frozenset[str],
         free_m: "Callable[[Channel, ModalState, NcBlock, MCode], Function]",
+        decides: str,
+        without_comments: "Callable[[Source], str]",
         careful_words: frozenset[str] = frozenset(),
         further_paths: "Sequence[GCode]" = (),
         first_offset: int = 0,
@@ -118,6 +124,8 @@ class Vocabulary:
         self.plain_words = self.words - careful_words
         self.first_offset = first_offset
         self._free_m = free_m
+        self._decides = re.compile(decides, re.ASCII)
+        self._without_comments = without_comments
 
     def m_code(self, number: int) -> "MCode | None":
         """Row of an M function: its own, that of a free function, or None if there is no such function.
@@ -128,6 +136,14 @@ class Vocabulary:
         if known is not None or not 0 <= number <= MAX_M:
             return known
         return MCode(number, f"M{number}", "", self._free_m)
+
+    def may_decide(self, source: Source) -> bool:
+        """Whether a line that cannot be read may decide which lines follow, or about values."""
+        try:
+            text = self._without_comments(source)
+        except ProgramError:
+            text = source.text.upper()
+        return self._decides.search(text) is not None
 
 
 class SpindleWords(NamedTuple):

@@ -4,6 +4,7 @@ What a block that is left out would have changed is unknown. So errors that may 
 shown (FOLLOW), and the check ends at a line that reads the state (V.A., V.G., V.SPDL_PROG.).
 """
 
+import re
 from typing import Final
 
 from cnc_ptp.nc import faults, spindle_faults
@@ -26,6 +27,7 @@ OF_THE_LINE: Final = frozenset(
         *(spindle_faults.COMMAND_NOT_ALONE, spindle_faults.COMMAND_ARGUMENTS, spindle_faults.LINK_GROUP),
         *(spindle_faults.LINK_GROUP_DEFAULT, spindle_faults.LINK_RATIO, spindle_faults.LINK_DENOMINATOR),
         *(spindle_faults.LINK_GANTRY, spindle_faults.LINK_ITSELF),
+        *(spindle_faults.MAIN_SPINDLE_NUMBER, spindle_faults.FREE_M_IN_BRACKET),
         *(coordinate_faults.OFFSET_INDEX, coordinate_faults.AXES_MISSING, coordinate_faults.SCALE_FACTOR),
         *(coordinate_faults.SYSTEM_NUMBER, coordinate_faults.SYSTEM_VALUES, coordinate_faults.ACTIVITY),
         *(coordinate_faults.MIRROR_VALUE, coordinate_faults.MACHINE_TOOL),
@@ -49,6 +51,25 @@ FOLLOW: Final = (
     - OF_THE_LINE
 )
 """Errors that a block before them may have caused. LIMIT_POSITIVE and LIMIT_NEGATIVE are those of soft limits, too."""
+WRITTEN: Final[dict[int, tuple[str, ...]]] = {
+    faults.FEED_MISSING.number: ("{g}", "F"),
+    faults.SPEED_ABOVE_GEAR.number: ("{spindle}{gear}",),
+    faults.WORD_NOT_USED.number: ("{g}", "{word}"),
+    faults.PLANE_AXIS_MISSING.number: ("{g}",),
+    spindle_faults.TAPPING_FEED_ZERO.number: ("{g}", "F"),
+    spindle_faults.TAPPING_SPEED_ZERO.number: ("{g}", "S"),
+    spindle_faults.TAPPING_TWO.number: ("{g}", "{first}", "{second}"),
+    spindle_faults.PITCH_DIFFERS.number: ("G63", "F", "S"),
+}
+"""Of FOLLOW: words that make it an error of its line alone where all of them are in it: F0, a speed above the maximum.
+
+The maximum of a gear is no word, so it follows from the line that selected the gear.
+"""
+CAUSES_NOTHING: Final = re.compile(
+    r"\s*(?:/\s*\d*\s*)?(?:N\s*\d+\s*:?\s*)?#\s*(?:CONTOUR|EXPL|FLUSH|HSC|MSG|SLOPE|TIMER)(?![A-Z])",
+    re.ASCII | re.IGNORECASE,
+)
+"""Lines without which no other one has an error: they change neither positions nor feed nor spindles."""
 DEPENDS: Final = "what follows depends on it"
 ENOUGH: Final = f"{MOST_ERRORS} errors are enough"
 READS: Final = "what follows reads a state that is not known behind a block with an error"
@@ -68,7 +89,7 @@ class Recovery:
         self._noted: list[ProgramError] = []
         """Errors of the block that comes next."""
         self._skipped = False
-        """Blocks have been left out."""
+        """Blocks have been left out that may cause errors of others."""
 
     def note(self, error: ProgramError) -> None:
         """An error that changes nothing for what follows: its block is executed; one position counts once."""
@@ -98,7 +119,8 @@ class Recovery:
             state.take_over(before)
             execution.moved = False
         state.spindle.speedless.clear()
-        self._skipped = execution.uncertain = True
+        execution.uncertain = True
+        self._skipped = self._skipped or CAUSES_NOTHING.match(error.source.text) is None
         return len(self.errors) < MOST_ERRORS
 
     def ends_with(self, error: ProgramError) -> None:
@@ -132,10 +154,18 @@ class Recovery:
 
     def _take(self, error: ProgramError) -> None:
         place = (error.file, error.line)
-        if place in self._places or (self._skipped and error.number in FOLLOW):
+        if place in self._places or (self._skipped and may_follow(error)):
             return
         self._places.add(place)
         self.errors.append(error)
         self.last = error
         if len(self.errors) == MOST_ERRORS:
             self.unchecked = ENOUGH
+
+
+def may_follow(error: ProgramError) -> bool:
+    """Whether a block before it may have caused an error."""
+    if error.number not in FOLLOW:
+        return False
+    words = WRITTEN.get(error.number)
+    return words is None or not all(word.format(**error.values) in error.source.names for word in words)

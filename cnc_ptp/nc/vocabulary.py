@@ -18,6 +18,7 @@ from cnc_ptp.nc import (
     turning,
 )
 from cnc_ptp.nc.coordinates import codes
+from cnc_ptp.nc.lexer import normalise
 from cnc_ptp.nc.modal_state import ModalState
 from cnc_ptp.nc.program import GCode, MCode, Vocabulary
 from cnc_ptp.nc.radius import radius_codes
@@ -136,6 +137,17 @@ _M_CODES = (
 
 
 MAX_SKIP_LEVEL: Final = 10
+_INDEPENDENT: Final = (
+    *("ACS", "CONTOUR", "CS", "EXPL", "FLUSH", "HSC", "MCS", "MSG", "PRESET", "PSET", "ROTATION", "SCALE", "SLOPE"),
+    *("THREAD", "TIMER", "TOOL"),
+)
+"""First words of # commands that set no variable and change neither the order of lines nor the names of axes."""
+_NOT_READ: Final = r"(?<![-+*/=,\[])(?<![-+*/=,\[]\s)"
+"""A parameter behind such a sign is only read."""
+_DECIDES: Final = (
+    rf"^(?!\s*(?:/\s*\d*\s*)?(?:N\s*\d+\s*:?\s*|\[\s*\w+\s*\]\s*)*\#\s*(?:{'|'.join(_INDEPENDENT)})(?![A-Z]))"
+    rf".*?(?:[$#@%]|\bLL?\s|G\s*8\d|{_NOT_READ}\b[PV]\s*[\d.\[]|M\s*0*(?:2|17|29|30)(?![\d.]))"
+)
 
 TWINCAT: Final = Vocabulary(
     "twincat",
@@ -145,5 +157,7 @@ TWINCAT: Final = Vocabulary(
     value_words=frozenset("FSTDHIJKR"),
     function_words=frozenset("STDH"),
     free_m=functions.free_m,
+    decides=_DECIDES,
+    without_comments=normalise,
 )
 """Axis names of several letters begin with one of these, too (X1, Y_ACHSE)."""

@@ -147,3 +147,20 @@ def test_g28_reads_the_reference_point_of_the_axis_list() -> None:
     assert bench.give("channel", "start").accepted
     bench.run(3.0)
     assert (bench.position("x"), bench.position("y")) == (12.5, 0.0)
+
+
+def test_the_mill_with_the_shipped_tools_takes_their_lengths(tmp_path: Path) -> None:
+    """As docs/program.md says: `werkz_data` in place of `wz`. Without it, G43 says what is missing."""
+    text = (ROOT / "config" / "mill.yaml").read_text()
+    begin, end = text.index("    wz:"), text.index("    m_synch:")
+    machine, program = tmp_path / "mill.yaml", tmp_path / "a.ngc"
+    machine.write_text(f"{text[:begin]}    werkz_data: tools/mill.yaml\n{text[end:]}")
+    (tmp_path / "tools").mkdir()
+    (tmp_path / "tools" / "mill.yaml").write_text((ROOT / "config" / "tools" / "mill.yaml").read_text())
+    program.write_text("G21 G90 G54 G49\nT2 M6\nG43 H2 Z50.\nM30\n")
+    status, shown = call("check", str(program), "--machine", str(machine), "--dialect", "iso", "--canonical")
+    assert (status, "rapid (0, 0, 90)" in shown) == (0, True)
+    shipped = str(ROOT / "config" / "mill.yaml")
+    status, shown = call("check", str(program), "--machine", shipped, "--dialect", "iso")
+    reason = "no tool of the machine has a length; they are in a tool file (werkz_data) or in wz[2].laenge"
+    assert (status, f"column 5 'G43 H2 Z50.': G43 H2: {reason}" in shown) == (2, True)

@@ -246,8 +246,20 @@ def test_an_unknown_program_shows_the_folders(tmp_path: Path, capsys: pytest.Cap
     assert capsys.readouterr().err.splitlines()[2:] == [
         "^",
         f"note: searched: {tmp_path}, {shipped}",
-        f"note: nothing behind line 2 of {tmp_path / 'main.nc'} was checked: what follows depends on it",
+        f"note: behind line 2 of {tmp_path / 'main.nc'} only the syntax was checked: what follows depends on it",
     ]
+
+
+def test_syntax_errors_follow_the_note_that_only_the_syntax_was_checked(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Line 3 would be an error of the modal check, line 4 is one of syntax."""
+    (tmp_path / "main.nc").write_text("G00 X1\nP1 = 1/0\nG01 X1\nG77\nM30\n")
+    assert check(str(tmp_path / "main.nc"), None) == 2
+    lines = capsys.readouterr().err.splitlines()
+    note = f"note: behind line 2 of {tmp_path / 'main.nc'} only the syntax was checked: what follows depends on it"
+    assert [line for line in lines if line.startswith(("P-ERR", "note"))][1] == note
+    assert [line.split()[3] for line in lines if line.startswith("P-ERR")] == ["2", "4"]
 
 
 def test_a_search_folder_that_is_missing_is_a_warning(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

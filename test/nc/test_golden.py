@@ -89,6 +89,7 @@ def test_every_fault_has_a_bad_program():
     shown = {int(path.read_text().split()[1].removeprefix("P-ERR-")) for path in BAD}
     assert known == shown | {
         faults.ORDERED.number,
+        faults.M_NOT_THERE.number,
         flow_faults.LOOP_LIMIT.number,
         flow_faults.CYCLE_FILE.number,
         expression_faults.ONLY_WHILE_RUNNING.number,

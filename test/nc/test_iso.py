@@ -27,6 +27,7 @@ from cnc_ptp.parameters import OffsetTables
 AXES = ("X", "Y", "Z")
 HEADERS = [
     "G21 G90 G94 G54 G40 G49 G80",
+    "G21 G90 G94 G54 G40 G49 G80 G69 G15 G50.1",
     "G17 G20 G90 G94 G54 G64 P0.001",
     "%\nO0001 (PART)\nG21",
     "G0 G17 G40 G49 G80 G90",
@@ -203,7 +204,7 @@ def test_fast_and_careful_reading_agree(pairs, seed):
 
 
 WORDS = """
-    G0 G1 G2 G3 G4 G10 G17 G18 G19 G20 G21 G28 G43 G49 G52 G53 G54 G54.1 G55 G59.3 G61 G64 G73 G80 G81 G82 G83 G85 G86
+    G0 G1 G2 G3 G4 G10 G15 G16 G50.1 G51 G51.1 G65 G68 G69 G17 G18 G19 G20 G21 G28 G43 G49 G52 G53 G54 G54.1 G55 G59.3 G61 G64 G73 G80 G81 G82 G83 G85 G86
     G89 G90 G91 G90.1 G92 G92.1 G92.2 G92.3 G93 G94 G98 G99 M3 M5 M6 M19 M30 M98 M99 X10 Y-5 Z3 Z-9 R2 R-1 Q1 Q.01 P1 P2
     L2 L20 K3 F100 F0 S500 T1 H0 H1 D1 I5 J-5 N10 O1 O2 % / /2 ( ) ; = #1 [1] . - + é A1
 """
@@ -234,3 +235,18 @@ def test_g28_goes_to_the_reference_point_of_the_axis():
     blocks = run("G0 X5 Y5 Z5\nG91 G28 Z1\nG28 X0 Y0", dialect="iso", references=(1.5, -2.0, 40.0))
     targets = [block.motion.target for block in blocks if block.motion]
     assert targets == [(5.0, 5.0, 5.0), (5.0, 5.0, 6.0), (5.0, 5.0, 40.0), (1.5, -2.0, 40.0)]
+
+
+@pytest.mark.parametrize("line", ["G69", "G15", "G50.1", "G50.1 X7 Y7", "G69 G15 G50.1 G90"])
+def test_the_end_of_what_is_never_on_changes_nothing(line):
+    """The stream is that of the program without it."""
+    before, behind = "G0 X5 Y5", "G91 X2\nG1 Y3 F100\nG18 G2 X4 Z0 R9\nM30"
+    blocks = run(f"{before}\n{line}\n{behind}", dialect="iso")
+    plain = run(f"{before}\n\n{behind}", dialect="iso")
+    assert [block._replace(source=plain[0].source) for block in blocks] == [
+        block._replace(source=plain[0].source) for block in plain
+    ]
+
+
+def test_the_end_of_the_rotation_stands_beside_a_motion():
+    assert run("G69 G0 X5", dialect="iso")[0].motion.target == (5.0, 0.0, 0.0)

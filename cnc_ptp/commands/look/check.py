@@ -122,10 +122,8 @@ def print_result(errors: Sequence[ProgramError], good: str) -> int:
     for error in errors:
         print_error(error)
         if error.unchecked:
-            print(
-                f"note: nothing behind line {error.line} of {error.file} was checked: {error.unchecked}",
-                file=sys.stderr,
-            )
+            place = f"line {error.line} of {error.file}"
+            print(f"note: behind {place} only the syntax was checked: {error.unchecked}", file=sys.stderr)
         if error.number == RETURN_IN_MAIN.number:
             print("note: --as-subroutine checks a file that other programs call", file=sys.stderr)
     if good and not errors:

@@ -29,10 +29,6 @@ MODAL_BLOCK: Final = "MODAL_BLOCK"
 
 READS_STATE: Final = re.compile(r"V\s*\.\s*(?:A|G|RTG|SPDL_PROG)\s*\.", re.ASCII | re.IGNORECASE)
 """Readable state, which blocks before the line have changed."""
-DECIDES: Final = re.compile(
-    r"[$#@%]|\bLL?\s|G\s*8\d|\b[PV]\s*[\d.\[]|M\s*(?:0*2|17|29|30|99)\b", re.ASCII | re.IGNORECASE
-)
-"""What a line that cannot be read may do to the order of execution and to values."""
 ENDLESS: Final = (faults.CALL_DEPTH.number, flow_faults.LOOP_LIMIT.number, flow_faults.ENDLESS.number)
 """Nothing comes behind them."""
 ALL_LINES: Final = 1 << 60
@@ -193,7 +189,7 @@ class Execution(Flow):
             return False
         if line.control is not None or line.jump or line.call is not None:
             return False
-        if line.error is not None and DECIDES.search(line.source.text):
+        if line.error is not None and self.program.vocabulary.may_decide(line.source):
             return False
         if line.statement is not None and not line.statement.independent:
             return False

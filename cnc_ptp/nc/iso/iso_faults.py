@@ -15,7 +15,11 @@ MACHINE_INCREMENTAL = Fault(21809, "G53 with G91: positions in machine coordinat
 TOLERANCE_NEGATIVE = Fault(21810, "{word}{value}: the tolerance of G64 is negative")
 OFFSET_KIND = Fault(21822, "G10 L{value}: G10 sets zero offsets with L2 and L20 only")
 NO_MOTION = Fault(21811, "{word} without a motion: G80 has ended cycle and path function; program G00 to G03")
-NO_TOOL_TABLE = Fault(21812, "{g} H{number}: there is no tool table with lengths (werkz_data of the channel)")
+NO_TOOL_TABLE = Fault(
+    21812,
+    "{g} H{number}: no tool of the machine has a length;"
+    " they are in a tool file (werkz_data) or in wz[{number}].laenge",
+)
 RETRACT_BELOW = Fault(21813, "{g}: the bottom of the hole {bottom} mm is beyond the retract plane R {retract} mm")
 PECK = Fault(21814, "{g}: Q{value} must be greater than 0")
 DWELL = Fault(21821, "{g}: P{value} is negative")

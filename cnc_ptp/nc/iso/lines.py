@@ -8,6 +8,7 @@ from cnc_ptp.nc.block_words import BlockWords
 from cnc_ptp.nc.canonical import Source, code_name
 from cnc_ptp.nc.flow.lines import Call, Line
 from cnc_ptp.nc.iso import iso_faults
+from cnc_ptp.nc.iso.comments import without_comments
 from cnc_ptp.nc.iso.cycles import MOST_REPEATS
 from cnc_ptp.nc.iso.vocabulary import ISO
 from cnc_ptp.nc.lexer import MAX_DIGITS, NUMBER, SKIP, Token
@@ -41,30 +42,6 @@ def iso_line(line: Line) -> None:
         line.source = line.source._replace(block_number=int(match[1]), names=("N",), columns=(place,))
         at = match.end()
     line.block = _words(line, text, at)
-
-
-def without_comments(source: Source) -> str:
-    """The line in capitals with blanks in place of comments, which do not nest; raises ProgramError."""
-    kept: list[str] = []
-    opened = 0
-    for column, character in enumerate(source.text, start=1):
-        if opened:
-            opened = 0 if character == ")" else opened
-            kept.append(" ")
-        elif character == ";":
-            break
-        elif character == "(":
-            opened = column
-            kept.append(" ")
-        elif character == ")":
-            raise faults.COMMENT_NOT_OPEN.at(source, column)
-        elif not character.isascii():
-            raise faults.UNEXPECTED_CHARACTER.at(source, column, character=character)
-        else:
-            kept.append(character.upper())
-    if opened:
-        raise iso_faults.COMMENT_OPEN.at(source, opened)
-    return "".join(kept).rstrip()
 
 
 def _program_number(line: Line, text: str) -> None:

@@ -54,8 +54,13 @@ def dwell(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> D
 
 
 def require_axes(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> None:
-    """G28 moves the axes that it names. Raises ProgramError 21602 if it names none, 20651."""
+    """G28 moves the axes that it names. Raises ProgramError 21602 if it names none, 20797, 20651."""
     require_off(state, block.source, block.source.column(code.name), code.name)
+    letters = channel.vocabulary.axis_letters
+    unknown = next((word for word in block.words if word in letters and word not in channel.axis_index), "")
+    if unknown:
+        known = ", ".join(channel.axes)
+        raise nc_faults.AXIS_UNKNOWN.at(block.source, block.source.column(unknown), word=unknown, known=known)
     if channel.axis_index.keys().isdisjoint(block.words):
         raise coordinate_faults.AXES_MISSING.at(block.source, block.source.column(code.name), word=code.name)
 

@@ -70,6 +70,13 @@ def local_offset(channel: Channel, state: ModalState, block: NcBlock, code: GCod
     return ()
 
 
+def mirror_off(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> tuple[Function, ...]:
+    """G50.1, G50.1 X0 Y0: nothing, since G51.1 is not there; its axis words are no motion."""
+    if block.words:
+        axis_values(channel, state, block, code)
+    return ()
+
+
 def set_position(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> tuple[Function, ...]:
     """G92 X0: the present position has these values from now on."""
     own = state.coordinates.own

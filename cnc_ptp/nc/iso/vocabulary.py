@@ -6,6 +6,7 @@ from cnc_ptp.nc import feeds, functions, measuring, motions, transitions, turnin
 from cnc_ptp.nc.coordinates import codes
 from cnc_ptp.nc.iso import cycles, lengths, offsets
 from cnc_ptp.nc.iso import motions as own
+from cnc_ptp.nc.iso.comments import without_comments
 from cnc_ptp.nc.modal_state import ModalState
 from cnc_ptp.nc.program import GCode, MCode, Vocabulary
 from cnc_ptp.nc.radius import radius_codes
@@ -34,6 +35,8 @@ _G_CODES = (
     GCode(4, "block", motion=own.dwell, modal=False, own_words=True, words=frozenset("P")),
     GCode(9, "block end"),
     GCode(10, "block", function=offsets.set_offset, takes_axes=True, words=frozenset("LP")),
+    GCode(15, "polar coordinates"),
+    GCode(16, "polar coordinates", later="polar coordinates"),
     plane(17),
     plane(18),
     plane(19),
@@ -58,6 +61,9 @@ _G_CODES = (
     GCode(43, "tool length", minor=1, later="tool lengths without a table"),
     GCode(49, "tool length", prepare=lengths.length_off),
     GCode(turning.LARGEST_ISO, turning.LIMIT_GROUP),
+    GCode(50, "block", minor=1, function=offsets.mirror_off, takes_axes=True),
+    GCode(51, "scale", later="scaling"),
+    GCode(51, "block", minor=1, later="mirror images"),
     GCode(52, "block", function=offsets.local_offset, takes_axes=True),
     GCode(53, "block", prepare=offsets.machine_coordinates),
     *(GCode(number, "zero offset", prepare=codes.zero_offset) for number in range(54, 60)),
@@ -66,6 +72,9 @@ _G_CODES = (
     GCode(61, "block transition", select=transitions.stop_always),
     GCode(61, "block transition", minor=1, select=transitions.stop_always),
     GCode(64, "block transition", prepare=offsets.path_tolerance, words=frozenset("PQ")),
+    GCode(65, "block", later="macro calls"),
+    GCode(68, "rotation", later="rotation of coordinates"),
+    GCode(69, "rotation"),
     _cycle(73, "PQ"),
     _cycle(74, "P"),
     GCode(76, "path", later=_BORING),
@@ -120,6 +129,8 @@ ISO: Final = Vocabulary(
     value_words=frozenset("FSTDHIJKLPQR"),
     function_words=frozenset("ST"),
     free_m=functions.free_m,
+    decides=r"[%O]|M\s*0*(?:2|30|98|99)(?![\d.])",
+    without_comments=without_comments,
     further_paths=(NO_MOTION,),
     careful_words=frozenset("DHLPQ"),
     first_offset=FIRST_OFFSET,

@@ -45,6 +45,7 @@ from cnc_ptp.nc.radius.entries import Entry
 from cnc_ptp.nc.radius.shapes import Arc, Line, Point, Shape, distance
 from cnc_ptp.nc.radius.tool_radius import CENTRE, radius_of, tip_of, tool_of
 from cnc_ptp.nc.radius.working_plane import WorkingPlane, working_plane
+from cnc_ptp.nc.recovery import Recovery
 from cnc_ptp.nc.tools.tool_state import NO_TOOL
 
 NO_LENGTH: Final = 1e-9
@@ -64,10 +65,11 @@ class RadiusCompensation:
         check: CheckMotion,
         search: BlockSearch | None,
         source: Source,
+        recovery: Recovery | None = None,
     ) -> None:
-        """`search` that is going on; `source` of the program."""
+        """`search` that is going on; `source` of the program; `recovery`: takes errors of G41 without a tool."""
         self._channel, self._state, self._check = channel, state, check
-        self._search = search
+        self._search, self._recovery = search, recovery
         self._source = source
         """Of the last block with compensation."""
         self._here = state.position
@@ -133,8 +135,7 @@ class RadiusCompensation:
         elif not self._in_plane(block, before):
             yield from self._put_beside(entry)
         elif self._path is None:
-            self._engage(block)
-            self._approach(entry, faults.APPROACH_ARC)
+            yield from self._begin_contour(entry)
         elif self._effective_side() != self._side:
             yield from self._finish_contour()
             self._approach(entry, faults.SIDE_ARC)
@@ -151,10 +152,23 @@ class RadiusCompensation:
         if not isinstance(motion, (LinearMove, CircularMove)):
             yield block
         elif self._names_plane(block):
-            self._engage(block)
-            self._approach(entry, faults.APPROACH_ARC)
+            yield from self._begin_contour(entry)
         else:
             yield from self._carried_out(entry, motion)
+
+    def _begin_contour(self, entry: Entry) -> Iterator[CanonicalBlock]:
+        """Behind an error a check continues as with G40: no contour of this G41 or G42 can be checked."""
+        try:
+            self._engage(entry.block)
+        except ProgramError as error:
+            if self._recovery is None:
+                raise
+            self._recovery.of_block(error, entry.block)
+            self._side = 0
+            self._state.radius_compensation = self._state.radius_compensation._replace(side=0, engaged=False)
+            yield entry.block
+            return
+        self._approach(entry, faults.APPROACH_ARC)
 
     def _engage(self, block: CanonicalBlock) -> None:
         """Takes plane and tool, which stay until the departure. Raises ProgramError."""
