@@ -77,8 +77,7 @@ def divided(span: Span, kinematics: Kinematics, near: Point) -> tuple[list[Trans
         middle = span.shape(begin + half)
         if not kinematics.fits(middle, span.bounds(begin, end), half):
             if half < SHORTEST:
-                reason = f"the path of {kinematics.name} comes to the centre of rotation, where the C axis has no angle"
-                raise CncError(NO_POSITION, reason)
+                raise CncError(NO_POSITION, f"the path of {kinematics.name} comes to {kinematics.reasons.none}")
             waiting += [(begin + half, end), (begin, begin + half)]
             continue
         near = positions(kinematics.shape(middle, near))
@@ -94,16 +93,12 @@ def require_possible(span: Span, kinematics: Kinematics, start: Point) -> None:
     """
     end = divided(span, kinematics, start)[1]
     if not kinematics.permits(end):
-        reason = (
-            f"the path of {kinematics.name} goes through the centre of rotation, which X must not pass (P-CHAN-00008)"
-        )
-        raise CncError(NO_POSITION, reason)
+        raise CncError(NO_POSITION, f"the path of {kinematics.name} goes through {kinematics.reasons.forbidden}")
     begin = positions(kinematics.shape(span.shape(0.0), start))
     reached = kinematics.forward(end)
     wrong = [abs(a - b) for a, b in zip((*begin, *reached), (*start, *positions(span.shape(span.length))), strict=True)]
     if max(wrong) > SAME_POSITION:
-        reason = f"the path of {kinematics.name} leaves the centre of rotation at an angle at which the C axis is not"
-        raise CncError(ANGLE_AT_CENTRE, reason)
+        raise CncError(ANGLE_AT_CENTRE, f"the path of {kinematics.name} leaves {kinematics.reasons.elsewhere}")
 
 
 def positions(shape: Sequence[Shape]) -> Point:
