@@ -48,6 +48,18 @@ class TransformedSpan:
         middle, reach = self._span.shape(begin + half), self._span.bounds(begin, end)
         return self._kinematics.bounds(middle, reach, half, self._near)
 
+    def keeps_away(self, distance: float) -> bool:
+        """`bounds` would be good for places at this distance (mm) beside the part, too."""
+        quarter = 0.25 * self.length
+        return all(
+            self._kinematics.fits(
+                self._span.shape(self._begin + place),
+                self._span.bounds(self._begin + place - quarter, self._begin + place + quarter),
+                quarter + distance,
+            )
+            for place in (quarter, 3.0 * quarter)
+        )
+
     def speed(self, u: float, axes: Sequence[int]) -> float:
         """|dq/du| of the given axes on the Cartesian path."""
         return self._span.speed(self._begin + u, axes)
