@@ -32,6 +32,7 @@ from cnc_ptp.protocol.axis_states import StatusBit
 from cnc_ptp.protocol.jobs import Jobs, JobStatus
 from cnc_ptp.protocol.transitions import Transition, require_source
 from cnc_ptp.protocol.unit import EMERGENCY_STOP
+from cnc_ptp.spindle.path_stop import PathStop
 
 CONSTANT_VELOCITY, IN_TARGET_POSITION = int(StatusBit.CONSTANT_VELOCITY), int(StatusBit.IN_TARGET_POSITION)
 
@@ -513,11 +514,19 @@ class Axis:
     def refuse(self, command: str, number: int, reason: str, /, **values: Value) -> NoReturn:
         raise self.checks.refusal(command, number, reason, **values)
 
-    def fault(self, cycle: int, error_id: int, reason: str, setpoint: MotionState | None = None) -> None:
+    def fault(
+        self,
+        cycle: int,
+        error_id: int,
+        reason: str,
+        setpoint: MotionState | None = None,
+        path_stop: PathStop | None = None,
+    ) -> None:
         """Error reaction: own ramp from the setpoint of `cycle`, state ErrorStop; nothing waits then.
 
         The slave of a gantry pair whose group has an error follows its master to standstill (`end_with_master`).
-        `setpoint` within a block, if it comes from another source than the axis' own generator.
+        `setpoint` within a block, if it comes from another source than the axis' own generator. `path_stop` is the ramp
+        in step with a spindle, instead of its own.
         """
         self.error_id = error_id
         self.drop_waiting(cycle)
@@ -536,7 +545,7 @@ class Axis:
         self.jobs.end_superimposed(cycle, JobStatus.FAILED, error_id)
         self.absorb(cycle)
         self._note_propagation(cycle, error_id)
-        effect = self._stop_for(cycle, error_id)
+        effect = self._stop_for(cycle, error_id) if path_stop is None else self._stop_in_step(cycle, path_stop)
         self.target_window.forget()
         self.take(T.FAULT)
         self._report_error(cycle, error_id, f"axis {self.name}: {reason}; {effect} (ErrorStop)")
@@ -549,6 +558,12 @@ class Axis:
         emergency = error_id == EMERGENCY_STOP
         self.ptp.stop(cycle, self.emergency_limits if emergency else self.own_limits, at_least=True)
         return f"the axis stops on its {'emergency' if emergency else 'own'} ramp"
+
+    def _stop_in_step(self, cycle: int, stop: PathStop) -> str:
+        """The ramp of the path, which its spindle goes along, too."""
+        position = self.ptp.state(stop.origin)[0]
+        self.ptp.run_out(stop.origin, stop.of_axis(self.name, position))
+        return f"the axis stops in step with spindle {stop.spindle}"
 
     def stop_in_emergency(self, cycle: int) -> None:
         """Down to standstill on the emergency ramp, state ErrorStop; a ramp that an error has started gets stronger."""

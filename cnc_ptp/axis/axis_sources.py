@@ -15,12 +15,13 @@ from cnc_ptp.axis.gantry import GantryPair
 from cnc_ptp.errors import CncError
 from cnc_ptp.motion.limits import LARGEST_STATE, OUT_OF_RANGE
 from cnc_ptp.motion.setpoints import Setpoints
-from cnc_ptp.parameters import AxisParameters
+from cnc_ptp.parameters import AxisParameters, SpindleParameters
 from cnc_ptp.path.geometry import begins_element
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import StatusBit, state_name
 from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, CycleBlock
 from cnc_ptp.protocol.unit import UPSTREAM_LOST
+from cnc_ptp.spindle.path_stop import PathStop, path_stop
 
 PATH_TOLERANCE = 1e-9
 """Largest distance (mm, deg) of an axis from the start of the path that takes it over."""
@@ -38,15 +39,20 @@ def in_range(setpoints: Setpoints) -> bool:
 class PathSource:
     """The channel that has the axis on its path."""
 
-    def __init__(self, axis: Axis) -> None:
-        self._axis = axis
+    def __init__(
+        self, axis: Axis, *, axes: Mapping[str, AxisParameters], spindles: Mapping[str, SpindleParameters]
+    ) -> None:
+        """`axes` and `spindles` of the machine by name."""
+        self._axis, self._axes, self._spindles = axis, axes, spindles
+        self._block: ChannelBlock | None = None
+        """The last one of the channel that moves the axis."""
         self._first_cycle = 0
         self._to_go = [0.0]
         """Distance to the end of the element: at the end of the last block, then in each cycle of this one."""
 
     def setpoints(self, first_cycle: int, inputs: Mapping[str, CycleBlock]) -> Setpoints | None:
         """The setpoints of the channel that moves the axis, none if no channel does; switches the setpoint source."""
-        channel = self._owning_channel(inputs)
+        channel = self._block = self._owning_channel(inputs)
         if channel is None:
             self._leave(first_cycle)
             return None
@@ -66,6 +72,14 @@ class PathSource:
         position, velocity, acceleration, _ = setpoints.at(count - 1)
         self._axis.ptp.take_over(first_cycle + count - 1, position, velocity, acceleration)
         return setpoints
+
+    def stop(self, cycle: int) -> PathStop | None:
+        """The ramp in step with the spindle on the path, when no further block comes; none if it is not on one."""
+        axis, block = self._axis, self._block
+        alone = axis.superposed or axis.coupled or axis.carried is not None
+        if block is None or alone or not axis.on_path or block.first_cycle + block.count != cycle:
+            return None
+        return path_stop(block, self._axes, self._spindles)
 
     def watch(self, cycle: int, velocity: float) -> None:
         """A path no longer waits in a direction when it reverses, or when another element starts."""

@@ -37,7 +37,7 @@ from cnc_ptp.control.drives import Drive, make_drive
 from cnc_ptp.control.faults import FOLLOWING_ERROR
 from cnc_ptp.control.feedforward import CouplingLimits
 from cnc_ptp.motion.setpoints import MotionState, Setpoints
-from cnc_ptp.parameters import AxisParameters
+from cnc_ptp.parameters import AxisParameters, SpindleParameters
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import StatusBit
 from cnc_ptp.protocol.blocks import AxisBlock, Command, CycleBlock, CycleTick, Severity
@@ -65,8 +65,12 @@ class AxisUnit(Unit):
         cycle_time: float,
         drive: Drive | None = None,
         axes: Mapping[str, AxisParameters] | None = None,
+        spindles: Mapping[str, SpindleParameters] | None = None,
     ) -> None:
-        """`cycle_time` in s; without `drive` the simulated one of the parameters is used; `axes` of the machine."""
+        """`cycle_time` in s; without `drive` the simulated one of the parameters is used.
+
+        `axes` and `spindles` of the machine.
+        """
         super().__init__(parameters.name)
         self._axis = Axis(
             parameters,
@@ -95,7 +99,7 @@ class AxisUnit(Unit):
             AxisBlock, modulo_begin=begin, modulo_length=length, torque_digits=self._loop.torque_digits
         )
         known = axes or {parameters.name: parameters}
-        self._path = PathSource(self._axis)
+        self._path = PathSource(self._axis, axes=known, spindles=spindles or {})
         self._master = MasterSource(self._axis, axes=known, cycle_time=cycle_time)
         self._override = OverrideCommands(self._axis)
         self.check_override = self._override.check
@@ -184,7 +188,8 @@ class AxisUnit(Unit):
             return None
         leads = axis.on_path or (axis.coupling is not None and axis.coupling.master == source)
         if source in ("plc", "clock") or leads:
-            axis.fault(cycle, UPSTREAM_LOST, f"no block of '{source}' came within the watchdog time")
+            reason = f"no block of '{source}' came within the watchdog time"
+            axis.fault(cycle, UPSTREAM_LOST, reason, path_stop=self._path.stop(cycle))
         return None
 
     def remaining_distance(self, cycle: int) -> float:

@@ -362,6 +362,12 @@ class PtpGenerator:
         self.finish()
         self._set(cycle, Profile([(0.0, position, velocity, acceleration, jerk)]), ramp)
 
+    def run_out(self, cycle: int, profile: Profile) -> None:
+        """Ends the job; the stop ramp is `profile`, which begins at `cycle`."""
+        self.finish()
+        self._stop_locks = True
+        self._set(cycle, profile, None)
+
     # tables
 
     def _begin(self, cycle: int, job: Job, table: Profile, limits: Limits) -> None:

@@ -9,7 +9,8 @@ from collections.abc import Sequence
 from math import degrees, radians
 from typing import NamedTuple
 
-from cnc_ptp.kinematics.kinematics import Bounds, Point, Shape
+from cnc_ptp.kinematics.kinematics import Bounds, Point, Reasons, Shape
+from cnc_ptp.kinematics.way import Way
 
 
 class Cylinder(NamedTuple):
@@ -40,6 +41,10 @@ class Cylinder(NamedTuple):
     def likeness(self) -> tuple[int, float]:
         return self.c, radians(self.radius)
 
+    @property
+    def reasons(self) -> Reasons:
+        return Reasons()
+
     def forward(self, machine: Point) -> Point:
         point = [m - o for m, o in zip(machine, self.origin, strict=True)]
         point[self.c] *= radians(self.radius)
@@ -56,6 +61,9 @@ class Cylinder(NamedTuple):
         q, q1, q2, q3 = programmed[self.c]
         shape[self.c] = (q * turn + self.origin[self.c], q1 * turn, q2 * turn, q3 * turn)
         return shape
+
+    def possible(self, way: Way) -> bool:
+        return True
 
     def permits(self, machine: Point) -> bool:
         return True

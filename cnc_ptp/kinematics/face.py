@@ -12,13 +12,22 @@ through the centre the angle stays, and the radius changes its sign there.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from math import atan2, cos, degrees, radians, sin
 from typing import Final, NamedTuple
 
-from cnc_ptp.kinematics.kinematics import Bounds, Point, Shape
+from cnc_ptp.kinematics.kinematics import Bounds, Point, Reasons, Shape
+from cnc_ptp.kinematics.way import Way
 
 CENTRE: Final = 1e-6
 """mm; nearer to the centre of rotation a point has no angle."""
+AT_CENTRE: Final = "the centre of rotation, where the C axis has no angle"
+REASONS: Final = Reasons(
+    impossible=f"{AT_CENTRE} (P-CHAN-00008)",
+    none=AT_CENTRE,
+    forbidden="the centre of rotation, which X must not pass (P-CHAN-00008)",
+    elsewhere="the centre of rotation at an angle at which the C axis is not",
+)
 SHARE: Final = 0.1
 """Part of the distance from the centre by which a place of a part may be away from its middle."""
 
@@ -49,6 +58,10 @@ class Face(NamedTuple):
     @property
     def likeness(self) -> tuple[int, float]:
         return self.x, 1.0
+
+    @property
+    def reasons(self) -> Reasons:
+        return REASONS
 
     def forward(self, machine: Point) -> Point:
         """x = r·cos C, y = r·sin C."""
@@ -89,6 +102,19 @@ class Face(NamedTuple):
         shape[self.x] = (place, radius * a1, radius * (a2 + a1 * a1), radius * (a3 + 3.0 * a1 * a2 + a1 * a1 * a1))
         shape[self.c] = (angle, degrees(w1.imag), degrees(w2.imag), degrees(w3.imag))
         return shape
+
+    def possible(self, way: Way) -> bool:
+        """A line through the centre needs X to pass it, an arc through it has no angle there."""
+        ends = min(abs(self._vectors(way.shape(u))[0]) for u in (0.0, 1.0))
+        if way.straight and (self.through or ends < CENTRE):
+            return True
+        nearest = [abs(self._vectors(way.shape(u))[0]) for u in way.changes(partial(self._approach, way))]
+        return min(ends, *nearest, 1.0) >= CENTRE
+
+    def _approach(self, way: Way, u: float) -> float:
+        """How the square of the distance from the centre changes."""
+        z, z1, _, _ = self._vectors(way.shape(u))
+        return (z.conjugate() * z1).real
 
     def permits(self, machine: Point) -> bool:
         return self.through or machine[self.x] >= self.origin[self.x] - CENTRE

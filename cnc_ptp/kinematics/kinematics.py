@@ -7,13 +7,29 @@ Lengths in mm, angles in degrees; a point has one value for each axis of the pat
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
-Point = tuple[float, ...]
-Shape = tuple[float, float, float, float]
-"""q and its first three derivatives by the path of one axis."""
+from cnc_ptp.kinematics.way import Point as Point
+from cnc_ptp.kinematics.way import Shape as Shape
+from cnc_ptp.kinematics.way import Way
+
 Bounds = tuple[float, float, float]
 """Largest |q1|, |q2|, |q3| of one axis over a part of the path."""
+
+
+class Reasons(NamedTuple):
+    """Why a path is refused, for the texts of errors: the path …
+
+    impossible  goes through …, when the program is read
+    none        comes to …, where the axes have no position
+    forbidden   goes through …, where `permits` says no
+    elsewhere   leaves …, where the axes are not at its start
+    """
+
+    impossible: str = "places at which the machine has no position"
+    none: str = "a place at which the machine has no position"
+    forbidden: str = "a place at which the machine must not be"
+    elsewhere: str = "from a place at which the machine is not"
 
 
 class Kinematics(Protocol):
@@ -35,6 +51,10 @@ class Kinematics(Protocol):
     def origin(self) -> Point:
         """Machine position of the programmed zero point."""
 
+    @property
+    def reasons(self) -> Reasons:
+        """For the texts of errors."""
+
     def forward(self, machine: Point) -> Point:
         """The programmed point of a machine position."""
 
@@ -43,6 +63,9 @@ class Kinematics(Protocol):
 
     def shape(self, programmed: Sequence[Shape], near: Point) -> list[Shape]:
         """Of the machine axes, from that of the programmed ones at a place; `near`: a machine position beside it."""
+
+    def possible(self, way: Way) -> bool:
+        """The axes can go a whole programmed motion; looked at when the program is read."""
 
     def permits(self, machine: Point) -> bool:
         """The axes may be there; soft limits are not meant."""

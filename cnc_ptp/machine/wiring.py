@@ -68,9 +68,10 @@ def build_unit(
     cycle_time = machine.cycle_time_us * 1e-6
     kinds = unit_kinds(machine)
     if kinds[name] == "axis":
-        return AxisUnit(machine.axes[name], cycle_time=cycle_time, axes=machine.axes)
+        return AxisUnit(machine.axes[name], cycle_time=cycle_time, axes=machine.axes, spindles=machine.spindles)
     if kinds[name] == "spindle":
-        spindle = SpindleUnit(machine.spindles[name], cycle_time=cycle_time, spindles=tuple(machine.spindles))
+        names = tuple(machine.spindles)
+        spindle = SpindleUnit(machine.spindles[name], cycle_time=cycle_time, spindles=names, axes=machine.axes)
         spindle.sources = sources_of(kinds)
         return spindle
     if kinds[name] == "channel":

@@ -126,9 +126,10 @@ class BlockResolver:
             functions = tapping.functions(channel, state, block, path)
         elif turning.concerns(state, block):
             functions = turning.functions(channel, state, block)
+            note_functions(channel, state, functions)
         elif block.functions and (path.spindle or not path.own_words):
             functions = block_functions(channel, state, block)
-            note_functions(channel, state, block, functions)
+            note_functions(channel, state, functions)
         if control or block.controls:
             functions += control + bracketed_controls(channel, state, block, functions)
         if state.c_axis:

@@ -26,9 +26,7 @@ KINEMATICS_SYNTAX = Fault(21751, "it is written {syntax}")
 KINEMATICS_AXES = Fault(21752, "{command} with axes {first} and {second}; it is written {syntax}")
 CYLINDER_RADIUS = Fault(21753, "radius {value} mm of #CYL must be above 0")
 KINEMATICS_NOT_ON = Fault(21754, "{command} OFF without {command}")
-THROUGH_CENTRE = Fault(
-    21755, "the path of {command} goes through the centre of rotation, where the C axis has no angle (P-CHAN-00008)"
-)
+THROUGH_CENTRE = Fault(21755, "the path of {command} goes through {place}")
 FACE_SIDE = Fault(
     21756, "#FACE with {axis} at {value} mm, beyond the centre of rotation: a lathe needs 0 or more (P-CHAN-00008)"
 )

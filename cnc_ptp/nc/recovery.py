@@ -14,6 +14,7 @@ from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.execution import Execution
 from cnc_ptp.nc.iso import iso_faults
 from cnc_ptp.nc.modal_state import ModalState
+from cnc_ptp.nc.tapping import CODES as TAPPING_CODES
 
 MOST_ERRORS: Final = 20
 """Errors of one interpretation."""
@@ -90,6 +91,8 @@ class Recovery:
         """Errors of the block that comes next."""
         self._skipped = False
         """Blocks have been left out that may cause errors of others."""
+        self._tapping = False
+        """G63, G331 or G332 among them: a negative S leads out of the thread then."""
 
     def note(self, error: ProgramError) -> None:
         """An error that changes nothing for what follows: its block is executed; one position counts once."""
@@ -116,6 +119,7 @@ class Recovery:
             self.unchecked, self.last = "" if execution.at_end else DEPENDS, error
             return False
         if before is not None:
+            self._tapping = self._tapping or state.path in TAPPING_CODES
             state.take_over(before)
             execution.moved = False
         state.spindle.speedless.clear()
@@ -154,7 +158,8 @@ class Recovery:
 
     def _take(self, error: ProgramError) -> None:
         place = (error.file, error.line)
-        if place in self._places or (self._skipped and may_follow(error)):
+        follows = may_follow(error) or (self._tapping and error.number == faults.SPEED_NEGATIVE.number)
+        if place in self._places or (self._skipped and follows):
             return
         self._places.add(place)
         self.errors.append(error)

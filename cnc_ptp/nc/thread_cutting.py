@@ -164,7 +164,7 @@ def take_offset(channel: Channel, state: ModalState, block: NcBlock) -> None:
         state.thread = state.thread._replace(offset=value)
 
 
-def note_functions(channel: Channel, state: ModalState, block: NcBlock, functions: Sequence[Function]) -> None:
+def note_functions(channel: Channel, state: ModalState, functions: Sequence[Function]) -> None:
     """Keeps what functions do to spindles: whether they turn, and whether that is within a thread."""
     for function in functions:
         if not isinstance(function, SpindleFunction):

@@ -33,6 +33,8 @@ LARGEST: Final = 196
 LARGEST_ISO: Final = 50
 GROUP: Final = "cutting speed"
 LIMIT_GROUP: Final = "largest speed"
+STOPS: Final = (5, 19)
+"""M functions behind which a spindle does not turn."""
 M_PER_MINUTE: Final = 1000.0 / 60.0
 FEET_PER_MINUTE: Final = 304.8 / 60.0
 """mm/s"""
@@ -126,13 +128,14 @@ def with_spindle(
     programmed: tuple[float, ...],
     motion: LinearMove | CircularMove,
 ) -> LinearMove | CircularMove:
-    """G95: the motion with its feed in a turn, and that at the commanded speed. Raises ProgramError 50499, 21548.
+    """G95: the motion with its feed in a turn, and that at the commanded speed.
 
-    A spindle of the PLC reports no speed: there the programmed one counts.
+    Raises ProgramError 50499, 21548, 21726, 21727. A spindle of the PLC reports no speed: the programmed one counts.
     """
     word = "F" if "F" in block.words else _g_name(block)
     require_spindle(channel, block, "G95")
     main = current_main(channel, state)
+    _require_rotation(channel, state, block, main, word)
     speed, modal = state.speeds.get(main.key, 0.0), state.turning
     if modal.speed:
         speed = speed_at(state, main, 0.5 * (state.programmed[modal.facing] + programmed[modal.facing]))
@@ -140,6 +143,23 @@ def with_spindle(
         raise _fault(turning_faults.SPEED_ZERO, block, word, spindle=main.key)
     link = None if main.plc_control else FeedPerTurn(main.key, modal.feed)
     return motion._replace(feed=modal.feed * speed / 60.0, per_turn=link)
+
+
+def _require_rotation(channel: Channel, state: ModalState, block: NcBlock, main: Spindle, word: str) -> None:
+    """Raises ProgramError for a spindle that cannot turn: the path would wait for it without end.
+
+    M05 of the same block may come behind the motion, and one of the PLC may turn whatever the program says.
+    """
+    if main.key == state.c_axis:
+        raise _fault(turning_faults.FEED_OF_C_AXIS, block, word, spindle=main.key, axis=channel.table.c_axis)
+    if main.key in state.thread.stopped and not main.plc_control and not _stops_spindle(block):
+        raise _fault(turning_faults.FEED_OF_STOPPED, block, word, spindle=main.key)
+
+
+def _stops_spindle(block: NcBlock) -> bool:
+    return any(code.number in STOPS for code in block.m) or any(
+        words.m == 5 or words.positioning for words in block.spindles
+    )
 
 
 def _g_name(block: NcBlock) -> str:

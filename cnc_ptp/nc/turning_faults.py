@@ -24,6 +24,12 @@ LIMIT_TOO_LATE = Fault(21722, "{g} S{value} must be in a block before G96{instea
 LIMIT_MISSING = Fault(21723, "{g} without a speed, as in {examples}")
 PLC_SPINDLE = Fault(21724, "{g} needs a spindle that the NC moves, the PLC controls {spindle} (P-CHAN-00069)")
 MAIN_SPINDLE = Fault(21725, "#MAIN SPINDLE while the cutting speed is constant (G96): G97 before it")
+FEED_OF_C_AXIS = Fault(
+    21726, "feed per turn (G95) while spindle {spindle} is axis {axis} of the path and does not turn; G94 before it"
+)
+FEED_OF_STOPPED = Fault(
+    21727, "feed per turn (G95) of spindle {spindle}, which the program has stopped; M03, M04 or G94 before it"
+)
 
 SPEED_LIMITED: Final = 20633
 """Number of the warning at S of G96."""

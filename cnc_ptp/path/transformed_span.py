@@ -48,6 +48,18 @@ class TransformedSpan:
         middle, reach = self._span.shape(begin + half), self._span.bounds(begin, end)
         return self._kinematics.bounds(middle, reach, half, self._near)
 
+    def keeps_away(self, distance: float) -> bool:
+        """`bounds` would be good for places at this distance (mm) beside the part, too."""
+        quarter = 0.25 * self.length
+        return all(
+            self._kinematics.fits(
+                self._span.shape(self._begin + place),
+                self._span.bounds(self._begin + place - quarter, self._begin + place + quarter),
+                quarter + distance,
+            )
+            for place in (quarter, 3.0 * quarter)
+        )
+
     def speed(self, u: float, axes: Sequence[int]) -> float:
         """|dq/du| of the given axes on the Cartesian path."""
         return self._span.speed(self._begin + u, axes)
@@ -77,8 +89,7 @@ def divided(span: Span, kinematics: Kinematics, near: Point) -> tuple[list[Trans
         middle = span.shape(begin + half)
         if not kinematics.fits(middle, span.bounds(begin, end), half):
             if half < SHORTEST:
-                reason = f"the path of {kinematics.name} comes to the centre of rotation, where the C axis has no angle"
-                raise CncError(NO_POSITION, reason)
+                raise CncError(NO_POSITION, f"the path of {kinematics.name} comes to {kinematics.reasons.none}")
             waiting += [(begin + half, end), (begin, begin + half)]
             continue
         near = positions(kinematics.shape(middle, near))
@@ -94,16 +105,12 @@ def require_possible(span: Span, kinematics: Kinematics, start: Point) -> None:
     """
     end = divided(span, kinematics, start)[1]
     if not kinematics.permits(end):
-        reason = (
-            f"the path of {kinematics.name} goes through the centre of rotation, which X must not pass (P-CHAN-00008)"
-        )
-        raise CncError(NO_POSITION, reason)
+        raise CncError(NO_POSITION, f"the path of {kinematics.name} goes through {kinematics.reasons.forbidden}")
     begin = positions(kinematics.shape(span.shape(0.0), start))
     reached = kinematics.forward(end)
     wrong = [abs(a - b) for a, b in zip((*begin, *reached), (*start, *positions(span.shape(span.length))), strict=True)]
     if max(wrong) > SAME_POSITION:
-        reason = f"the path of {kinematics.name} leaves the centre of rotation at an angle at which the C axis is not"
-        raise CncError(ANGLE_AT_CENTRE, reason)
+        raise CncError(ANGLE_AT_CENTRE, f"the path of {kinematics.name} leaves {kinematics.reasons.elsewhere}")
 
 
 def positions(shape: Sequence[Shape]) -> Point:

@@ -6,6 +6,9 @@ workpiece). The path adds its travel to it, which is 0 when it begins: nothing c
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
+from cnc_ptp.parameters import AxisParameters
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import state_name
@@ -13,6 +16,7 @@ from cnc_ptp.protocol.blocks import ChannelBlock
 from cnc_ptp.protocol.spindle_states import SpindleMode
 from cnc_ptp.spindle import transitions as T
 from cnc_ptp.spindle.faults import NOT_AT_STANDSTILL, ON_PATH, PATH_ENDED, SENSORLESS
+from cnc_ptp.spindle.path_stop import path_stop
 from cnc_ptp.spindle.path_travel import PathTravel
 from cnc_ptp.spindle.spindle import Spindle
 
@@ -20,8 +24,9 @@ from cnc_ptp.spindle.spindle import Spindle
 class PathCommands:
     """Commands of the channel whose path moves the spindle."""
 
-    def __init__(self, spindle: Spindle) -> None:
-        self._spindle = spindle
+    def __init__(self, spindle: Spindle, axes: Mapping[str, AxisParameters]) -> None:
+        """`axes` of the machine."""
+        self._spindle, self._axes = spindle, axes
 
     def check(self, command: str) -> None:
         """Raises 24031 for a command to move the spindle while the path does."""
@@ -63,15 +68,34 @@ class PathCommands:
         `travel`: deg since it was taken over, where the path has come to rest.
         """
         spindle = self._spindle
-        if spindle.travel is None or spindle.travel.channel != source:
+        if spindle.travel is None or spindle.travel.channel != source or spindle.travel.stop is not None:
             return f"spindle {spindle.name}: leave_path without effect, no path of '{source}' moves it"
         spindle.leave_path(cycle, travel)
         return None
+
+    def lose(self, cycle: int, source: str) -> None:
+        """Nothing more comes from `source`: channel, PLC or clock.
+
+        The spindle continues in step with the axes of the path, each of which comes to the same ramp. Where there is no
+        such ramp (#CAX), and the channel is silent, it leaves the path.
+        """
+        spindle, travel = self._spindle, self._spindle.travel
+        if travel is None or travel.stop is not None:
+            return
+        block = travel.block
+        if block is not None and block.first_cycle + block.count == cycle:
+            travel.stop = path_stop(block, self._axes, {spindle.name: spindle.parameters})
+        if travel.stop is None and source in (travel.channel, "clock"):
+            spindle.leave_path(cycle)
 
     def take_setpoints(self, cycle: int, block: object) -> None:
         """The travel of this block; without any the spindle stops on its own ramp (24033)."""
         spindle, travel = self._spindle, self._spindle.travel
         if travel is None:
+            return
+        if travel.stop is not None:
+            if travel.at_rest(cycle):
+                spindle.leave_path(cycle, travel.at(cycle)[0])
             return
         if isinstance(block, ChannelBlock) and (travel.take(spindle.name, block) or not travel.begun):
             return

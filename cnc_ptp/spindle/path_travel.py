@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from cnc_ptp.motion.setpoints import MotionState, Setpoints
 from cnc_ptp.protocol.blocks import ChannelBlock
+from cnc_ptp.spindle.path_stop import PathStop
 
 AT_REST: MotionState = (0.0, 0.0, 0.0, 0.0)
 
@@ -21,6 +22,10 @@ class PathTravel:
         self._first_cycle = 0
         self._setpoints = Setpoints([], [], [], [])
         self._last = AT_REST
+        self.block: ChannelBlock | None = None
+        """The last one of the channel."""
+        self.stop: PathStop | None = None
+        """The ramp to a standstill, without the channel."""
 
     @property
     def begun(self) -> bool:
@@ -41,10 +46,18 @@ class PathTravel:
             block.spindle_jerk[begin:end],
         )
         self._last = self._setpoints.at(block.count - 1)
+        self.block = block
         return True
 
+    def at_rest(self, cycle: int) -> bool:
+        """The ramp has ended."""
+        stop = self.stop
+        return stop is not None and (cycle - stop.origin) * self._cycle_time >= stop.profile.duration
+
     def at(self, cycle: int) -> MotionState:
-        """In a cycle of the last block, and behind it with the speed of its last cycle."""
+        """In a cycle of the last block, and behind it with the speed of its last cycle, or on the ramp."""
+        if self.stop is not None:
+            return self.stop.profile.state_at((cycle - self.stop.origin) * self._cycle_time)
         index = cycle - self._first_cycle
         count = len(self._setpoints)
         if index < count:

@@ -323,6 +323,8 @@ class Spindle:
         self.take(T.FAULT)
         self.when_faulted()
         how = "on its ramp" if self.travel is None else "with the path"
+        if self.travel is not None and self.travel.stop is not None:
+            how = "in step with the axes of the path"
         text = f"spindle {self.name}: {reason}; the spindle stops {how} (ErrorStop)"
         self.report_error(cycle, error_id, text)
 

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 from cnc_ptp.control.commands import FEEDFORWARD_WAITS, FeedforwardCommands, feedforward_warning
 from cnc_ptp.control.drives import Drive, make_drive
 from cnc_ptp.errors import CncError, warning_text
-from cnc_ptp.parameters import GearParameters, SpindleParameters
+from cnc_ptp.parameters import AxisParameters, GearParameters, SpindleParameters
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Refusal, Severity, SpindleBlock
@@ -46,8 +46,12 @@ class SpindleUnit(Unit):
         cycle_time: float,
         drive: Drive | None = None,
         spindles: tuple[str, ...] = (),
+        axes: Mapping[str, AxisParameters] | None = None,
     ) -> None:
-        """`cycle_time` in s; without `drive` the simulated one of the parameters is used; `spindles` of the machine."""
+        """`cycle_time` in s; without `drive` the simulated one of the parameters is used.
+
+        `spindles` and `axes` of the machine.
+        """
         super().__init__(parameters.name)
         self._given_drive = drive
         self._cycle_time = cycle_time
@@ -64,7 +68,7 @@ class SpindleUnit(Unit):
         self._coupling = CouplingCommands(self.spindle, spindles or (parameters.name,))
         self._rotation = RotationCommands(self.spindle, procedures)
         self._power = PowerCommands(self.spindle)
-        self._path = PathCommands(self.spindle)
+        self._path = PathCommands(self.spindle, axes or {})
         self._groups = (
             self,
             self._rotation,
@@ -292,6 +296,7 @@ class SpindleUnit(Unit):
 
     def do_upstream_lost(self, cycle: int, *, source: str) -> None:
         """The watchdog: `source` (channel, PLC, clock or master) has sent nothing in time; the spindle stops."""
+        self._path.lose(cycle, source)
         if can_follow(self.spindle):
             self.spindle.fault(cycle, UPSTREAM_LOST, f"no block of '{source}' came within the watchdog time")
 

@@ -149,7 +149,8 @@ def test_path_that_gives_no_setpoints_any_more_stops_the_spindle() -> None:
     bench.offline.runner("s").unit.lost.add("channel")
     bench.run(0.5)
     assert [event.text for event in bench.events_of("s") if event.severity == 2] == [
-        "spindle s: no block of 'channel' came within the watchdog time; the spindle stops with the path (ErrorStop)"
+        "spindle s: no block of 'channel' came within the watchdog time; the spindle stops in step with the axes of the"
+        " path (ErrorStop)"
     ]
     assert bench.column("s", "set_speed_rpm")[-1] == 0.0
     assert_spindle_in_limits(bench)

@@ -57,9 +57,9 @@ def test_killed_node(running, node):
         assert lost >= {"x": {"plc", "channel"}, "channel": {"x", "y", "plc"}}.get(node, {"plc"} - {node})
 
 
-@pytest.mark.parametrize("node", ["s", "z", "channel"])
+@pytest.mark.parametrize("node", ["s", "z", "channel", "plc", "clock"])
 def test_killed_node_while_it_taps(tmp_path, node):
-    """Spindle and axis come to rest, each on its ramp."""
+    """Spindle and axis come to rest; without their channel in step, as their events say."""
     (tmp_path / "tap.nc").write_text("G63 Z-100 F500 S400\nM30\n")
     recording = tmp_path / "run.mcap"
     graph = Running(MILL, "--program", tmp_path / "tap.nc", "--record", recording)
@@ -76,6 +76,17 @@ def test_killed_node_while_it_taps(tmp_path, node):
     if node != "s":
         speed = recorded.states["/s/state"]["set_speed_rpm"]
         assert speed.max() > 100.0 and speed[-1] == 0.0
+    if node not in ("s", "z"):
+        lost = f"no block of '{node}' came within the watchdog time"
+        assert f"P-ERR-26101 axis z: {lost}; the axis stops in step with spindle s (ErrorStop)" in output
+        stops = "the spindle stops in step with the axes of the path (ErrorStop)"
+        assert f"P-ERR-26101 spindle s: {lost}; {stops}" in output
+        z, s = recorded.states["/z/state"], recorded.states["/s/state"]
+        count = min(len(z["cycle"]), len(s["cycle"]))
+        assert (z["cycle"][:count] == s["cycle"][:count]).all()
+        turned = s["set_position_deg"][:count] - s["set_position_deg"][0]
+        depth = z["set_position"][:count] - z["set_position"][0]
+        assert turned == pytest.approx(-360.0 / 1.25 * depth, abs=0.01)
 
 
 RETRACTS = "axis X retracts by 5 mm while the path follows spindle s, then the path stops and the program is aborted"

@@ -44,6 +44,18 @@ def test_what_may_only_follow_from_an_error_is_not_shown() -> None:
     assert found("G90\nG01 X10 F-5\nG01 X20\nG02 X40 I-15\nM30") == [(21022, 2, "")]
 
 
+@pytest.mark.parametrize(
+    ("line", "numbers"),
+    [
+        ("G63 Z-10 F250 S200 K1\nZ5 S-200", [21648]),
+        ("G331 Z-10 S200 K0\nG332 Z5 S-200\nZ6 S-100", [21647]),
+        ("G01 X10 F-5\nZ5 S-200", [21022, 20991]),
+    ],
+)
+def test_a_negative_speed_may_lead_out_of_a_thread_whose_line_was_left_out(line: str, numbers: list[int]) -> None:
+    assert [error.number for error in check(f"{line}\nM30", "a.nc", plain_channel(AXES, spindles=("S",)))] == numbers
+
+
 def test_a_plane_that_was_left_out_is_missed_by_nobody() -> None:
     """G18 was in the line with the error; the plane XY would need an axis that a lathe has not."""
     lathe = plain_channel("XZ")._replace(tools=ToolTable({1: Tool(radius=1.0)}, True))

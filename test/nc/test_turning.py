@@ -35,6 +35,26 @@ def moves(*points: tuple[str, float, float]) -> list[str]:
     return [text[kind].format(x, z) for kind, x, z in points]
 
 
+# feed per turn
+
+
+@pytest.mark.parametrize("restart", ["M03", "M04 S200", "G97 M03 S500", "S[M3 REV200]"])
+@pytest.mark.parametrize("stop", ["M05", "M19", "S[M5]"])
+def test_a_spindle_that_turns_again_leads_the_feed(stop: str, restart: str) -> None:
+    text = f"M03 S300 G95 F0.5\nG01 X40\n{stop}\n{restart}\nX20\nM30"
+    assert any("line (10, 0, 0) feed" in line for line in turned(text, spindles=three_spindles()))
+
+
+def test_m05_in_the_block_of_a_feed_per_turn_may_come_behind_it() -> None:
+    block = turned("M03 S300 G95 F0.5\nG01 X40 M05\nM30")[-2]
+    assert block == "S[M5] | line (20, 0, 0) feed 2.5, 0.5 mm per turn of S"
+
+
+def test_a_spindle_of_the_plc_is_not_said_to_stand() -> None:
+    table = three_spindles(plc_control=True)
+    assert turned("M03 S300 G95 F0.5\nM05\nG01 X40\nM30", spindles=table)[-2] == "line (20, 0, 0) feed 2.5"
+
+
 # diameters
 
 

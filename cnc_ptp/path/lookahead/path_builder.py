@@ -18,6 +18,7 @@ from cnc_ptp.path.lookahead.corners import Corner, corner, kink_square, quiet_li
 from cnc_ptp.path.lookahead.parts import Geometry, PathPart
 from cnc_ptp.path.lookahead.smoothing import Smoother
 from cnc_ptp.path.lookahead.spans import Curve, Span, whole
+from cnc_ptp.path.shape import Shape
 from cnc_ptp.path.transformed_span import divided, positions, require_possible
 
 SLOWEST: Final = 1.0
@@ -81,16 +82,18 @@ class PathBuilder:
 
     def passes(self, motion: LinkedMotion) -> bool:
         """False if the path has to stop before `motion`, whatever its velocity."""
-        if self._smoother is not None or motion.transition.smoothing is not None or self._last is None:
-            return True  # where a smooth curve begins and ends is known later; it may stop there
-        return self._possible(self._last, motion) and self._join(self._last, motion)[1] > 0.0
+        last = self._last
+        if self._smoother is not None or motion.transition.smoothing is not None or last is None:
+            # where a smooth curve begins and ends is known later; it may stop there
+            return last is None or self._smoothes(motion) or self._possible(motion.span.shape(0.0), motion)
+        return self._possible(last.span.shape(last.span.length), motion) and self._join(last, motion)[1] > 0.0
 
-    def _possible(self, last: LinkedMotion, motion: LinkedMotion) -> bool:
-        """The axes behind a kinematics can run `motion` from where `last` leaves them."""
+    def _possible(self, begin: Sequence[Shape], motion: LinkedMotion) -> bool:
+        """The axes behind a kinematics can run `motion` from where they are at `begin`, of the programmed axes."""
         kinematics = motion.kinematics
         if kinematics is None:
             return True
-        end = positions(kinematics.shape(last.span.shape(last.span.length), self.reached))
+        end = positions(kinematics.shape(begin, self.reached))
         try:
             require_possible(motion.span, kinematics, end)
         except CncError:
@@ -101,16 +104,34 @@ class PathBuilder:
         """The parts that are known once `motion` follows."""
         parts: list[PathPart] = []
         before = self._smoothed
-        if self._smoother is not None and (before is None or not smoothed_together(before, motion)):
+        smooth = self._smoothes(motion)
+        if self._smoother is not None and (before is None or not smooth or not smoothed_together(before, motion)):
             parts = self._end_of_curve()
         smoothing, element = motion.transition.smoothing, motion.span.element
-        if smoothing is None or motion.feed == inf or motion.kinematics is not None or not isinstance(element, Line):
+        if not smooth or smoothing is None or not isinstance(element, Line):
             return parts + self._link(motion)
         if self._smoother is None:
             self._smoother = Smoother(element.start, self._path_axes, smoothing.path_dev, smoothing.track_dev)
         self._smoothed = motion
         self._smoother.add(element.target, motion.block, motion.feed)
         return parts + self._pieces()
+
+    def _smoothes(self, motion: LinkedMotion) -> bool:
+        """The motion becomes part of a smooth curve.
+
+        Behind a kinematics only where the axes have a position everywhere within twice its deviation, not at the centre
+        of a face: there it is run as it is.
+        """
+        smoothing, kinematics = motion.transition.smoothing, motion.kinematics
+        if smoothing is None or motion.feed == inf or not isinstance(motion.span.element, Line):
+            return False
+        if kinematics is None:
+            return True
+        try:
+            parts, _ = divided(motion.span, kinematics, self.reached)
+        except CncError:
+            return False
+        return all(part.keeps_away(2.0 * smoothing.path_dev) for part in parts)
 
     def finish(self) -> list[PathPart]:
         """The rest: nothing follows."""
@@ -134,7 +155,10 @@ class PathBuilder:
         smoother, motion = self._smoother, self._smoothed
         assert smoother is not None and motion is not None
         for piece in smoother.take():
-            parts += self._link(LinkedMotion(piece.geometry, motion.axes, piece.feed, piece.block, motion.transition))
+            made = LinkedMotion(
+                piece.geometry, motion.axes, piece.feed, piece.block, motion.transition, kinematics=motion.kinematics
+            )
+            parts += self._link(made)
         return parts
 
     def _link(self, motion: LinkedMotion) -> list[PathPart]:
@@ -206,6 +230,7 @@ class PathBuilder:
 def smoothed_together(motion: LinkedMotion, following: LinkedMotion) -> bool:
     """Two motions of one smooth curve."""
     alike = following.transition.smoothing == motion.transition.smoothing and following.feed < inf
+    alike = alike and following.kinematics == motion.kinematics
     return alike and isinstance(following.span.element, Line)
 
 
