@@ -385,7 +385,7 @@ def test_example_contour_is_within_the_deviation():
 
 def test_example_contour_is_a_program(tmp_path, monkeypatch, capsys):
     contour = runpy.run_path(str(CONTOUR))
-    lines = list(contour["program"](2000))
+    lines = list(contour["program"](contour["points"](2000)))
     assert lines[:2] == ["%CONTOUR", "N10 G90 G17 G21"]
     assert lines[3] == "G01 X60Y28Z-0.5 F6000"
     assert lines[-2:] == ["#HSC OFF", "M30"]
