@@ -94,6 +94,8 @@ class Axis:
         """Number of the job that waits for the end of the active one, or of a stop; 0: none waits."""
         self.last_target: float | None = None
         """Target of the last positioning, whatever has become of it; None when there has been another motion since."""
+        self.stop_held = False
+        """MC_Stop holds the axis: no path may move it."""
         self.powered = parameters.powered_at_start
         self.state = S.STANDSTILL if self.powered else S.DISABLED
         self.error_id = 0

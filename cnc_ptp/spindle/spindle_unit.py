@@ -283,6 +283,13 @@ class SpindleUnit(Unit):
         self._queue.clear()
         self._passed_on.append(Command(self.name, "stop", {"homes": False}))
 
+    def do_hold_stop(self, cycle: int, *, enabled: bool) -> None:
+        """See Unit; a slave that goes on with its master, or a spindle on a path, is not held (24022, 24031)."""
+        if enabled:
+            self._path.check("hold_stop")
+            self._queue.check("hold_stop", "", self._coupling.master)
+        super().do_hold_stop(cycle, enabled=enabled)
+
     def do_decouple(self, cycle: int, *, owner: str = "") -> str | None:
         """See CouplingCommands.do_decouple; waiting commands that came through the master are dropped."""
         message = self._coupling.do_decouple(cycle, owner=owner)

@@ -1,11 +1,10 @@
 """Every command in every state: units brought into each state by commands, and their answers as tables.
 
-`python test/support/answer_support.py` prints the tables as the units answer now.
+`python test/support/answer_support.py` writes the tables of docs/answers.md as the units answer now.
 """
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
@@ -31,7 +30,10 @@ Give = Callable[..., Any]
 
 @dataclass
 class Situation:
-    """A unit in one of its states: its column in the table, the state, and how it gets there."""
+    """A unit in one of its states: its column in the table, the state, and how it gets there.
+
+    The state is that inside: a unit that MC_Stop holds reports Stopping instead of Standstill.
+    """
 
     column: str
     state: AxisStateCode | ChannelStateCode
@@ -71,6 +73,7 @@ AXIS_ROWS: dict[str, tuple[str, dict[str, Any]]] = {
     "set_override": ("set_override", {"percent": 80.0}),
     "set_override_type": ("set_override_type", {"type": 2}),
     "stop": ("stop", {}),
+    "hold_stop": ("hold_stop", {"enabled": True}),
     "halt": ("halt", {}),
     "emergency_stop": ("emergency_stop", {"deceleration": 20_000.0, "jerk": 500_000.0}),
     "jog": ("jog", {"velocity": 30.0}),
@@ -198,6 +201,7 @@ AXIS = [
         ("SynchronizedMotion: path", S.SYNCHRONIZED_MOTION, on_path),
         ("SynchronizedMotion: slave", S.SYNCHRONIZED_MOTION, slave),
         ("Stopping", S.STOPPING, partial(halting, command="stop")),
+        ("Stopping: MC_Stop held", S.STANDSTILL, after("hold_stop", 10, enabled=True)),
         ("ErrorStop", S.ERROR_STOP, error_stop),
     )
 ]
@@ -210,6 +214,7 @@ SPINDLE_ROWS: dict[str, tuple[str, dict[str, Any]]] = {
     "start": ("start", {"direction": "cw", "speed_rpm": 500.0}),
     "set_speed": ("set_speed", {"speed_rpm": 800.0}),
     "stop": ("stop", {}),
+    "hold_stop": ("hold_stop", {"enabled": True}),
     "orient": ("orient", {"position_deg": 90.0}),
     "home": ("home", {}),
     "set_override": ("set_override", {"percent": 80.0}),
@@ -257,6 +262,7 @@ SPINDLE = [
         ("ContinuousMotion", S.CONTINUOUS_MOTION, [START]),
         ("SynchronizedMotion", S.SYNCHRONIZED_MOTION, [("follow_path", {"source": "channel"}, 0)]),
         ("Stopping", S.STOPPING, [START, ("stop", {}, 10)]),
+        ("Stopping: MC_Stop held", S.STANDSTILL, [("hold_stop", {"enabled": True}, 10)]),
         ("ErrorStop", S.ERROR_STOP, [("upstream_lost", {"source": "plc"}, 10)]),
     )
 ]
@@ -367,6 +373,16 @@ def written(kind: str) -> Iterator[str]:
         yield f"| `{row}` | {' | '.join(found[column][row] for column in columns)} |"
 
 
+def write_page() -> None:
+    """Exchanges the tables of the page."""
+    text = PAGE.read_text(encoding="utf-8")
+    for kind, headline in HEADLINES.items():
+        before, section = text.split(f"\n## {headline}\n")
+        begin = section.index("| command | ")
+        end = section.index("\n\n", begin)
+        text = f"{before}\n## {headline}\n{section[:begin]}" + "\n".join(written(kind)) + section[end:]
+    PAGE.write_text(text, encoding="utf-8")
+
+
 if __name__ == "__main__":
-    for kind in HEADLINES:
-        sys.stdout.write(f"## {HEADLINES[kind]}\n" + "\n".join(written(kind)) + "\n\n")
+    write_page()
