@@ -157,10 +157,19 @@ class SpindleUnit(Unit):
             self._queue.add(queued)
             self._waiting_jobs.add(job)
         else:
-            message = self._carry_out(cycle, queued)
+            left = self._leave_master_by(command, source, cycle)
+            message = "; ".join(filter(None, (left, self._carry_out(cycle, queued)))) or None
         self._queue.taken += source == PLC
         self._job_given = job
         return message
+
+    def _leave_master_by(self, command: str, source: str, cycle: int) -> str | None:
+        """A stop of PLC or people ends a coupling: the slave does not turn again with the next command of its master."""
+        master = self._coupling.master or self._coupling.wanted
+        if command != "stop" or source not in ("", PLC) or not master:
+            return None
+        self.do_decouple(cycle)
+        return f"spindle {self.name}: stop ends the coupling to {master}"
 
     def begin_job(self, command: Command, cycle: int) -> int:
         """See Unit: a job that waits for its turn becomes active then; a stop without effect is none."""
