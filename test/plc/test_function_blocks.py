@@ -314,6 +314,43 @@ def test_in_gear_of_a_spindle_is_what_the_spindle_reports() -> None:
     assert (gear.error_id, gear.error_text) == (22167, "spindle s: m was not granted as its master")
 
 
+def test_mc_gear_in_changes_the_ratio_of_an_axis_that_is_in_gear() -> None:
+    """x goes from 0 to 60 at 100 mm/s from 0.5 s on; y follows with 1, and with 2 from 0.8 s on (30 mm of x)."""
+
+    def make(io: PlcIo) -> Recorder:
+        x, y = io.axis("x"), io.axis("y")
+        gear, again, move, out = MC_GearIn(y), MC_GearIn(y), MC_MoveAbsolute(x), MC_GearOut(y)
+
+        def step(io: PlcIo, n: int) -> str:
+            gear(1 <= n < 20, master=x)
+            move(n >= 50, position=60.0, velocity=100.0)
+            again(n >= 80, master="x", ratio_numerator=2.0)
+            out(n >= 160)
+            io.done(n > 170)
+            return outputs(again) + " in_gear" * again.in_gear
+
+        return Recorder(step)
+
+    bench = PlcBench(make).run()
+    assert bench.plc.seen == ["", "busy", "busy active in_gear", "command_aborted"] and not bench.refusals()
+    x = bench.column("x", "set_position")[800]  # y is continuous in the cycle of the command
+    assert 20.0 < x < 35.0 and bench.position("y") == pytest.approx(x + 2.0 * (60.0 - x), abs=1e-9)
+    assert [record.command for record in bench.records if record.target == "y"] == [
+        "couple", "set_coupling_factor", "decouple",
+    ]  # fmt: skip
+
+
+def test_a_new_ratio_for_another_kind_of_coupling_is_refused_with_its_reason() -> None:
+    unit = FakeUnit("axis", "y")
+    unit.block = axis_block(S.SYNCHRONIZED_MOTION, master="x", job=7)
+    gear = MC_GearIn(unit)
+    gear(True, master="x", ratio_numerator=2.0)
+    assert (unit.last.command, unit.last.arguments) == ("set_coupling_factor", {"factor": 2.0})
+    unit.last.tells = REFUSED
+    gear(True)
+    assert gear.error and gear.error_id == 23005
+
+
 def test_mc_power_gives_enable_and_feed_releases_when_they_change() -> None:
     unit = FakeUnit()
     power = MC_Power(unit)

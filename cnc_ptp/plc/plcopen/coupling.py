@@ -61,7 +61,15 @@ class SlaveBlock(EndlessBlock):
 
 
 class MC_GearIn(SlaveBlock):
-    """Couples the unit to a master with a ratio: it moves by numerator / denominator times the way of the master."""
+    """Couples the unit to a master with a ratio: it moves by numerator / denominator times the way of the master.
+
+    An axis that is the linear slave of this master already takes the new ratio over, in motion too.
+    """
+
+    def __init__(self, unit: UnitReference) -> None:
+        super().__init__(unit)
+        self._coupling_job = 0
+        """Of the coupling whose ratio is changed."""
 
     @property
     def in_gear(self) -> bool:
@@ -77,7 +85,24 @@ class MC_GearIn(SlaveBlock):
         if self.unit.kind == "spindle":
             self._couple("couple", master, factor_num=ratio_numerator, factor_den=ratio_denominator)
         else:
+            self._gear_axis(master, factor)
+
+    def _gear_axis(self, master: Master, factor: float) -> None:
+        block, name = self.unit.block, master if isinstance(master, str) else master.name
+        engaged = isinstance(block, AxisBlock) and block.state[-1] == AxisStateCode.SYNCHRONIZED_MOTION
+        if engaged and isinstance(block, AxisBlock) and block.master == name:
+            self._master, self._coupling_job = name, block.job
+            self._start("set_coupling_factor", factor=factor)
+        else:
             self._couple("couple", master, factor=factor)
+
+    def _follow_unit(self) -> None:
+        """A new ratio is no job: it is that of the coupling which goes on."""
+        if self.unit.kind == "spindle":
+            super()._follow_unit()
+        elif self._coupling_job:
+            self._job, self._coupling_job = self._coupling_job, 0
+            self._follow_job()
 
 
 class MC_CamIn(SlaveBlock):
