@@ -164,7 +164,7 @@ class SpindleUnit(Unit):
         return message
 
     def _leave_master_by(self, command: str, source: str, cycle: int) -> str | None:
-        """A stop of PLC or people ends a coupling: the slave does not turn again with the next command of its master."""
+        """A stop of PLC or people ends a coupling, so that the next command of the master does not turn the slave."""
         master = self._coupling.master or self._coupling.wanted
         if command != "stop" or source not in ("", PLC) or not master:
             return None
@@ -293,7 +293,7 @@ class SpindleUnit(Unit):
         self._passed_on.append(Command(self.name, "stop", {"homes": False}))
 
     def do_hold_stop(self, cycle: int, *, enabled: bool) -> None:
-        """See Unit; a slave that goes on with its master, or a spindle on a path, is not held (24022, 24031)."""
+        """See Unit; a slave that follows its master, or a spindle on a path, is not held (24022, 24031)."""
         if enabled:
             self._path.check("hold_stop")
             self._queue.check("hold_stop", "", self._coupling.master)

@@ -18,6 +18,9 @@ JOBS = {
         "--scenario", EXAMPLES / "plc_tool_changer.yaml",
     ),
     "generator": (PTP, "--plc", EXAMPLES / "plc_setpoint_generator.py"),
+    "homing": (PTP, "--plc", EXAMPLES / "plc_homing.py"),
+    "homing by the drive": (EXAMPLES / "sercos.yaml", "--plc", EXAMPLES / "plc_sercos_homing.py"),
+    "axis": (PTP, "--plc", EXAMPLES / "plc_move_axis.py"),
 }  # fmt: skip
 
 MOVES = """
@@ -50,7 +53,7 @@ def folder(tmp_path_factory):
 
 
 @pytest.mark.parametrize("options", [[], ["--free-run"], ["--composed"]], ids=str)
-@pytest.mark.parametrize("name", ["tool changer", "generator", "moves"])
+@pytest.mark.parametrize("name", [*JOBS, "moves"])
 def test_a_plc_in_the_graph_equals_the_offline_run(folder, name, options):
     job = {**JOBS, "moves": (PTP, "--plc", folder / "moves.py")}[name]
     recording = folder / "graph.mcap"

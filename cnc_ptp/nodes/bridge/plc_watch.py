@@ -1,4 +1,4 @@
-"""Measures the time of each cycle of a PLC in a file; breaks off one that takes too long, and tells of many that do."""
+"""Measures the time of each cycle of a PLC in a file; breaks off one that takes too long, and reports many that do."""
 
 from __future__ import annotations
 

@@ -97,7 +97,7 @@ class MC_GearIn(SlaveBlock):
             self._couple("couple", master, factor=factor)
 
     def _follow_unit(self) -> None:
-        """A new ratio is no job: it is that of the coupling which goes on."""
+        """A new ratio is no job: the job of the coupling is followed."""
         if self.unit.kind == "spindle":
             super()._follow_unit()
         elif self._coupling_job:

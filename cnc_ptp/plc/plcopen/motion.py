@@ -179,7 +179,7 @@ class MC_Stop(ExecuteBlock):
         self._hold(True)
 
     def _hold(self, holds: bool) -> None:
-        """The unit is told by the first block that holds it, and by the last one."""
+        """The first block that holds the unit and the last one give the command."""
         before = self.unit.stops
         self.unit.stops += int(holds) - int(self._holds)
         self._holds = holds
