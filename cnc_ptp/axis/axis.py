@@ -97,6 +97,8 @@ class Axis:
         """The trajectory has a goal tolerance and has not come into it."""
         self.last_target: float | None = None
         """Target of the last positioning, whatever has become of it; None when there has been another motion since."""
+        self.stop_held = False
+        """MC_Stop holds the axis: no path may move it."""
         self.powered = parameters.powered_at_start
         self.state = S.STANDSTILL if self.powered else S.DISABLED
         self.error_id = 0

@@ -121,6 +121,8 @@ class PathSource:
         if axis.state != S.STANDSTILL:
             reason = f"the channel moves the path while the axis is in {state_name(axis.state)}"
             axis.fault(cycle, PATH_NOT_ACCEPTED, reason)
+        elif axis.stop_held:
+            axis.fault(cycle, PATH_NOT_ACCEPTED, "the channel moves the path while MC_Stop holds the axis (hold_stop)")
         elif abs(start - position) > PATH_TOLERANCE:
             reason = f"the path of the channel starts at {start} {axis.unit}, the axis is at {position} {axis.unit}"
             axis.fault(cycle, PATH_NOT_ACCEPTED, reason)

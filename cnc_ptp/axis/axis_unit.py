@@ -105,13 +105,14 @@ class AxisUnit(Unit):
         self.check_override = self._override.check
         self.overlay.full_override = self._override.highest
         self.overlay.begin("controller_enable", float(parameters.powered_at_start))
+        self._stops = StopCommands(self._axis)
         self._commands = (
             self,
             PowerCommands(self._axis, actual_position=lambda: self._loop.position),
             FeedReleaseCommands(self._axis),
             PtpCommands(self._axis, self._queue),
             self._override,
-            StopCommands(self._axis),
+            self._stops,
             JogCommands(self._axis, self._queue),
             SuperimposedCommands(self._axis, self._queue),
             TrajectoryCommands(self._axis, self._trajectory, cycle_time=cycle_time),
@@ -181,6 +182,12 @@ class AxisUnit(Unit):
         axis.drop_waiting(cycle)
         return jobs.begin(cycle)
 
+    def do_hold_stop(self, cycle: int, *, enabled: bool) -> None:
+        """See Unit; an axis that follows a channel or a master is stopped there (23005, 23040)."""
+        if enabled:
+            self._stops.refuse_synchronous("hold_stop")
+        super().do_hold_stop(cycle, enabled=enabled)
+
     def do_upstream_lost(self, cycle: int, *, source: str) -> str | None:
         """The watchdog: `source` has sent nothing in time; without its channel only an axis on the path stops."""
         axis = self._axis
@@ -237,7 +244,7 @@ class AxisUnit(Unit):
 
     def _led(self, first_cycle: int, inputs: Mapping[str, CycleBlock]) -> Setpoints | None:
         """Setpoints of a master or of a channel, None if its own generator moves the axis."""
-        axis = self._axis
+        axis, axis.stop_held = self._axis, self.stop_held
         if axis.carried is not None:
             self._path.put_down(first_cycle, inputs)
         if axis.coupled and not axis.on_path:

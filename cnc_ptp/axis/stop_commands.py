@@ -35,7 +35,7 @@ class StopCommands:
 
     def _stop(self, command: str, cycle: int, *, locks: bool) -> str | None:
         axis = self._axis
-        self._refuse_synchronous(command)
+        self.refuse_synchronous(command)
         cancelled = self._cancel_target(command, cycle)
         if cancelled is not None:
             return cancelled
@@ -53,7 +53,7 @@ class StopCommands:
         axis.drop_waiting(cycle)
         return f"axis {axis.name}: {command} cancels the waiting new target; the axis stops"
 
-    def _refuse_synchronous(self, command: str) -> None:
+    def refuse_synchronous(self, command: str) -> None:
         """An axis that follows a channel or a master is stopped there."""
         axis = self._axis
         if axis.coupled and axis.coupling is not None:
@@ -79,7 +79,7 @@ class StopCommands:
         slave, also one that follows as a flying saw on a path).
         """
         axis, command = self._axis, "emergency_stop"
-        self._refuse_synchronous(command)
+        self.refuse_synchronous(command)
         if axis.state not in STOPPABLE and axis.state != S.STOPPING:
             return without_effect(axis.name, command, axis.state)
         if self._brakes_naturally(cycle):

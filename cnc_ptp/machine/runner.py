@@ -89,6 +89,7 @@ class UnitRunner:
         if isinstance(block, PlcBlock):
             return
         self.unit.note_jobs(block)
+        self.unit.show_held(block)
         block.job, block.job_events = self.unit.jobs.active, self.unit.jobs.take_events()
         block.answers, self._answers = self._answers, []
         block.control_units = self.unit.overlay.news()

@@ -75,7 +75,11 @@ class PlcBridgeNode(UnitNode):
         unit = build_unit(machine, PLC, scenario=entries, end_when_idle=end_when_idle, plc_file=plc_file)
         super().__init__(machine, unit, **options)
         if self.plc.program is not None:
-            self.plc.program.guard = PlcWatch(machine.watchdog_ms)
+            self.plc.program.guard = PlcWatch(
+                machine.watchdog_ms,
+                block_ms=machine.block_cycles * machine.cycle_time_us / 1000.0,
+                paced=lambda: self.paced,
+            )
         self._sequence: dict[str, int] = {}
         self._life_sign_timeout = machine.life_sign_timeout_ms / 1000.0
         self._life_sign_counter: int | None = None

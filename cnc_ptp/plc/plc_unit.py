@@ -244,6 +244,7 @@ class PlcUnit(Unit):
         self.setpoints.clear()
         if self.program is not None:
             self.program.runs = False
+            self._outgoing += self.program.io.release_stops()
         self._end_when_idle = True
         for unit, kind in self._kinds.items():
             block = self.reported.get(unit)
@@ -386,12 +387,18 @@ def at_rest(block: CycleBlock) -> bool:
         if bits & StatusBit.PROTECTED and block.state[-1] == AxisStateCode.SYNCHRONIZED_MOTION:
             return block.set_velocity[-1] == 0.0  # a slave: its master knows whether there is more to come
         waits = bool(held or (bits & StatusBit.EXT_SETPOINT and not bits & StatusBit.HAS_JOB))
-        return block.set_velocity[-1] == 0.0 and (waits or block.state[-1] in REST_STATES)
+        return block.set_velocity[-1] == 0.0 and (waits or block.state[-1] in REST_STATES or stop_held(block))
     if isinstance(block, SpindleBlock):
         pending = block.plc_commands != block.plc_acknowledged
-        busy = block.state[-1] in SPINDLE_AT_WORK or block.gear_change_active[-1] or pending
+        works = block.state[-1] in SPINDLE_AT_WORK and not (stop_held(block) and block.set_speed_rpm[-1] == 0.0)
+        busy = works or block.gear_change_active[-1] or pending
         return block.set_acceleration_deg_s2[-1] == 0.0 and not busy
     return True
+
+
+def stop_held(block: AxisBlock | SpindleBlock) -> bool:
+    """MC_Stop holds the unit: it reports Stopping, but its stop is done."""
+    return block.state[-1] == AxisStateCode.STOPPING and not block.job
 
 
 def needs_stop(block: CycleBlock) -> bool:

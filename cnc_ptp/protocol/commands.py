@@ -90,6 +90,7 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "set_override": {"percent": NUMBER},
         "set_override_type": {"type": INTEGER},
         "stop": {},
+        "hold_stop": {"enabled": SWITCH},
         "halt": {},
         "jog": {"velocity": NUMBER},
         "home": {"position": OPTIONAL_NUMBER},
@@ -156,6 +157,7 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "start": {"direction": Argument("text", choices=("cw", "ccw")), "speed_rpm": NUMBER, **FOR},
         "set_speed": {"speed_rpm": NUMBER, **FOR},
         "stop": {"own": OPTIONAL_SWITCH, "homes": OPTIONAL_SWITCH, **FOR},
+        "hold_stop": {"enabled": SWITCH},
         "orient": {
             "position_deg": NUMBER,
             "speed_rpm": OPTIONAL_POSITIVE,
@@ -238,6 +240,29 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
 }
 COUPLINGS = frozenset({"couple", "couple_gantry", "couple_cyclic", "couple_flying_saw", "couple_cam"})
 """Commands that make a slave of an axis."""
+HELD_OFF: Mapping[str, frozenset[str]] = {
+    "axis": frozenset(
+        {
+            "move_absolute",
+            "move_relative",
+            "move_modulo",
+            "move_additive",
+            "move_velocity",
+            "move_superimposed",
+            "new_target",
+            "new_velocity_and_target",
+            "compensation_start",
+            "jog",
+            "home",
+            "external_enable",
+        }
+    )
+    | COUPLINGS,
+    "spindle": frozenset({"start", "set_speed", "orient", "home", "select_gear", "couple", "follow_path"}),
+    "channel": frozenset(),
+    "plc": frozenset(),
+}
+"""Kind of unit -> commands that a held stop (`hold_stop`) refuses, whoever gives them."""
 INTERNAL = frozenset(
     {
         "upstream_lost",

@@ -7,8 +7,20 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import Any, ClassVar, NamedTuple
 
 from cnc_ptp.errors import CncError, Value, nearest_name, warning_text
-from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Event, EventValue, Severity, json_of
-from cnc_ptp.protocol.commands import BAD_ARGUMENT, OF_PLC, check_command, current_names, with_floats
+from cnc_ptp.protocol.axis_states import AxisStateCode
+from cnc_ptp.protocol.blocks import (
+    AxisBlock,
+    Command,
+    CommandRecord,
+    CycleBlock,
+    CycleTick,
+    Event,
+    EventValue,
+    Severity,
+    SpindleBlock,
+    json_of,
+)
+from cnc_ptp.protocol.commands import BAD_ARGUMENT, HELD_OFF, OF_PLC, check_command, current_names, with_floats
 from cnc_ptp.protocol.control_units import PERCENT, ControlUnit
 from cnc_ptp.protocol.jobs import JOBS, Jobs
 from cnc_ptp.protocol.overlay import HELD_BY_PLC, SERVED_BY_PLC, Overlay
@@ -31,6 +43,12 @@ EMERGENCY_STOP = 26168
 """Error of a unit in an emergency stop."""
 EMERGENCY_HOLDS = 26169
 """Refusal: the emergency stop has to be released first."""
+STOP_HOLDS = 22165
+"""Refusal: MC_Stop holds the unit while its execute is true."""
+THE_PLC, A_CLIENT = "the PLC", "a client"
+"""Who may hold a stop: what commands in blocks, and by services."""
+DRIVE_PROCEDURE = "S-0-0148"
+"""Parameter by which a drive homes the axis on its own."""
 
 
 class Unit(ABC):
@@ -57,6 +75,9 @@ class Unit(ABC):
         """Raises CncError for an override (percent) that the unit does not have; the command that asks for it."""
         self.sources: Collection[str] = ()
         """Who may command a spindle; without them every name is accepted."""
+        self._stop_holders: set[str] = set()
+        self._given_by = A_CLIENT
+        """Who gives the command that is carried out now."""
         self.lost: set[str] = set()
         """Sources that a watchdog has found lost; their blocks no longer count, even if they come."""
 
@@ -113,11 +134,15 @@ class Unit(ABC):
         arguments = with_floats(self.kind, name, arguments)
         if name == "overlay":
             return self._do_overlay(command, cycle, **arguments)
+        self._given_by = THE_PLC if command.id else A_CLIENT
+        self._refuse_held(name, arguments)
         self._refuse_edge(name, by_client=not command.id)
         requests = self.requested(name, arguments)
         self._note(self._ask(name, requests, cycle) if requests else self.handler(name)(cycle, **arguments))
         if name == "upstream_lost":
             self.lost.add(arguments["source"])
+            if arguments["source"] == PLC:
+                self._stop_holders.discard(THE_PLC)
         return command
 
     def _note(self, answer: str | Answer | None) -> None:
@@ -126,6 +151,31 @@ class Unit(ABC):
             self._warning, self._values = answer
         else:
             self._warning = answer or ""
+
+    # a stop that is held
+
+    @property
+    def stop_held(self) -> bool:
+        """Nothing moves the unit until `hold_stop` is off (PLCopen: Stopping until Done and not Execute)."""
+        return bool(self._stop_holders)
+
+    def do_hold_stop(self, cycle: int, *, enabled: bool) -> None:
+        """Holds the unit at its standstill, or no longer: the PLC and clients each their own hold."""
+        (self._stop_holders.add if enabled else self._stop_holders.discard)(self._given_by)
+
+    def _refuse_held(self, command: str, arguments: Mapping[str, Any]) -> None:
+        drive_moves = command == "write_drive_parameter" and arguments["idn"] == DRIVE_PROCEDURE
+        moves = command in HELD_OFF[self.kind] and not (command == "jog" and not arguments["velocity"])
+        if self._stop_holders and (moves or drive_moves):
+            holders = " and ".join(sorted(self._stop_holders, reverse=True))
+            reason = f"MC_Stop of {holders} holds the {self.kind} while its execute is true (hold_stop)"
+            raise self._refusal(command, STOP_HOLDS, reason)
+
+    def show_held(self, block: CycleBlock) -> None:
+        """A unit that is held at its standstill reports Stopping; called when its jobs have been noted."""
+        if self._stop_holders and isinstance(block, (AxisBlock, SpindleBlock)):
+            rest, stopping = int(AxisStateCode.STANDSTILL), int(AxisStateCode.STOPPING)
+            block.state = [stopping if state == rest else state for state in block.state]
 
     # control units of the HLI
 

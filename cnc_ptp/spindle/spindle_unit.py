@@ -161,10 +161,19 @@ class SpindleUnit(Unit):
             self._queue.add(queued)
             self._waiting_jobs.add(job)
         else:
-            message = self._carry_out(cycle, queued)
+            left = self._leave_master_by(command, source, cycle)
+            message = "; ".join(filter(None, (left, self._carry_out(cycle, queued)))) or None
         self._queue.taken += source == PLC
         self._job_given = job
         return message
+
+    def _leave_master_by(self, command: str, source: str, cycle: int) -> str | None:
+        """A stop of PLC or people ends a coupling, so that the next command of the master does not turn the slave."""
+        master = self._coupling.master or self._coupling.wanted
+        if command != "stop" or source not in ("", PLC) or not master:
+            return None
+        self.do_decouple(cycle)
+        return f"spindle {self.name}: stop ends the coupling to {master}"
 
     def begin_job(self, command: Command, cycle: int) -> int:
         """See Unit: a job that waits for its turn becomes active then; a stop without effect is none."""
@@ -286,6 +295,13 @@ class SpindleUnit(Unit):
         self.jobs.end(cycle, JobStatus.ABORTED)
         self._queue.clear()
         self._passed_on.append(Command(self.name, "stop", {"homes": False}))
+
+    def do_hold_stop(self, cycle: int, *, enabled: bool) -> None:
+        """See Unit; a slave that follows its master, or a spindle on a path, is not held (24022, 24031)."""
+        if enabled:
+            self._path.check("hold_stop")
+            self._queue.check("hold_stop", "", self._coupling.master)
+        super().do_hold_stop(cycle, enabled=enabled)
 
     def do_decouple(self, cycle: int, *, owner: str = "") -> str | None:
         """See CouplingCommands.do_decouple; waiting commands that came through the master are dropped."""

@@ -18,6 +18,9 @@ JOBS = {
         "--scenario", EXAMPLES / "plc_tool_changer.yaml",
     ),
     "generator": (PTP, "--plc", EXAMPLES / "plc_setpoint_generator.py"),
+    "homing": (PTP, "--plc", EXAMPLES / "plc_homing.py"),
+    "homing by the drive": (EXAMPLES / "sercos.yaml", "--plc", EXAMPLES / "plc_sercos_homing.py"),
+    "axis": (PTP, "--plc", EXAMPLES / "plc_move_axis.py"),
 }  # fmt: skip
 
 MOVES = """
@@ -50,7 +53,7 @@ def folder(tmp_path_factory):
 
 
 @pytest.mark.parametrize("options", [[], ["--free-run"], ["--composed"]], ids=str)
-@pytest.mark.parametrize("name", ["tool changer", "generator", "moves"])
+@pytest.mark.parametrize("name", [*JOBS, "moves"])
 def test_a_plc_in_the_graph_equals_the_offline_run(folder, name, options):
     job = {**JOBS, "moves": (PTP, "--plc", folder / "moves.py")}[name]
     recording = folder / "graph.mcap"
@@ -115,10 +118,81 @@ def test_a_plc_that_fails_stops_the_machine_on_its_ramps(tmp_path, fault, option
     assert x["set_position"][-1] < 1000.0 and not x["error_id"].any()
 
 
+SWALLOWED = """
+import time
+
+from cnc_ptp.plc.plcopen import MC_MoveAbsolute
+
+
+class Plc:
+    def __init__(self, io):
+        self.move = MC_MoveAbsolute(io.axis("x"))
+
+    def cycle(self, io):
+        self.move(True, position=1000.0, velocity=300.0)
+        end = time.monotonic() + {seconds}
+        while io.cycle == 600 and time.monotonic() < end:
+            try:
+                time.sleep(0.01)
+            except BaseException:
+                pass
+"""
+
+
+@pytest.mark.parametrize(("seconds", "others"), [(0.35, 0), (4.0, 26101)])
+def test_a_plc_that_catches_the_end_of_its_cycle_is_a_fault(tmp_path, seconds, others):
+    """After 2 s without a block the axes have stopped on their own; the run ends nevertheless."""
+    file, recording = tmp_path / "plc.py", tmp_path / "run.mcap"
+    file.write_text(SWALLOWED.format(seconds=seconds))
+    output = run("run", PTP, "--plc", file, "--record", recording, expect=1)
+    recorded = verified(recording, whole=not others)  # axes that have lost the PLC end on their own
+    (error,) = [event for event in recorded.events if event.error_id == 22162]
+    assert error.cycle == 600 and error.line in range(14, 18)
+    assert "the PLC cycle takes longer than 200 ms (P-MACH watchdog_ms); everything is stopped" in error.text
+    assert error.text in output.stderr
+    x = recorded.states["/x/state"]
+    assert x["set_velocity"][-1] == 0.0 and x["set_position"][-1] < 1000.0 and x["error_id"][-1] == others
+
+
+BEHIND = """
+import time
+
+from cnc_ptp.plc.plcopen import MC_MoveAbsolute
+
+
+class Plc:
+    def __init__(self, io):
+        self.move = MC_MoveAbsolute(io.axis("x"))
+
+    def cycle(self, io):
+        self.move(True, position=1000.0, velocity=300.0)
+        if 600 <= io.cycle < 900:
+            time.sleep(0.05)
+        io.done(self.move.done)
+"""
+
+
+def test_a_plc_whose_cycles_keep_taking_too_long_stops_the_machine(tmp_path):
+    """40 ms behind with each cycle: the sixth one is above 200 ms at the latest. In a free run it only takes longer."""
+    file, recording = tmp_path / "plc.py", tmp_path / "run.mcap"
+    file.write_text(BEHIND)
+    output = run("run", PTP, "--plc", file, "--record", recording, expect=1)
+    recorded = verified(recording)
+    (error,) = [event for event in recorded.events if event.severity == 2]
+    assert 600 < error.cycle <= 650
+    reason = "its cycles keep taking longer than the 10 ms of a block, it is more than 200 ms behind"
+    effect = "everything is stopped and the run ends"
+    assert (error.error_id, error.text) == (22163, f"plc plc: plc.py: {reason} (P-MACH watchdog_ms); {effect}")
+    assert error.text in output.stderr
+    x = recorded.states["/x/state"]
+    assert x["set_velocity"][-1] == 0.0 and x["set_position"][-1] < 1000.0 and not x["error_id"].any()
+    run("run", PTP, "--plc", file, "--free-run", expect=0)
+
+
 def test_a_plc_that_cannot_be_broken_off_is_a_silent_one(tmp_path):
     """It holds the interpreter itself: no signal is handled, no heartbeat sent."""
     file = tmp_path / "plc.py"
-    hang = "import ctypes; ctypes.PyDLL(None).sleep(5)"
+    hang = "sum(range(200_000_000))"  # seconds in C, which no signal ends
     file.write_text(FAULT.format(fault=hang))
     output = run("run", PTP, "--plc", file, expect=1)
     assert "P-ERR-26101 axis x: no block of 'plc' came within the watchdog time" in output.stderr

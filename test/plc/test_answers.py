@@ -31,6 +31,12 @@ def test_the_page_has_all_commands_and_all_states(kind: str) -> None:
         assert list(column) == list(ROWS[kind])
 
 
+@pytest.mark.parametrize("kind", HEADLINES)
+def test_each_command_is_accepted_in_a_state_of_the_page(kind: str) -> None:
+    for row in ROWS[kind]:
+        assert "ok" in {column[row] for column in TABLES[kind].values()}, row
+
+
 def test_every_number_of_the_page_is_explained() -> None:
     text = PAGE.read_text(encoding="utf-8")
     for kind, headline in HEADLINES.items():

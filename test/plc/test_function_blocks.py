@@ -114,6 +114,7 @@ COMMAND_OF: list[tuple[str, type, dict[str, Any], str, dict[str, Any]]] = [
     ),
     ("spindle", MC_Halt, {}, "stop", {}),
     ("spindle", MC_Stop, {}, "stop", {}),
+    ("spindle", MC_Stop, {"deceleration": 9.0, "jerk": 9.0}, "stop", {}),
     ("spindle", MC_Home, {}, "home", {}),
     (
         "spindle",
@@ -192,14 +193,40 @@ def test_mc_stop_holds_the_unit_until_execute_falls() -> None:
         "axis x: move_absolute refused: MC_Stop holds it while execute is true; nothing was changed",
     )
     other_stop(True)
+    unit.last.tells = DONE
     stop(False)
     move(False)
     move(True, position=1.0)
     assert move.error and unit.stops == 1  # the other one still holds it
-    other_stop(False)
+    other_stop(False)  # done for one call: it holds until that
+    assert unit.holds == [True, False]
     move(False)
     move(True, position=1.0)
     assert outputs(move) == "busy" and unit.last.command == "move_absolute"
+
+
+def test_mc_stop_holds_the_unit_until_it_is_done_even_if_execute_fell_before() -> None:
+    unit = FakeUnit()
+    stop = MC_Stop(unit)
+    stop(True)
+    unit.last.tells = ACTIVE
+    stop(False)
+    assert stop.busy and unit.holds == [True]
+    unit.last.tells = DONE
+    stop(False)
+    assert stop.done and unit.holds == [True, False]
+
+
+def test_a_spindle_has_no_ramps_to_be_given() -> None:
+    unit = FakeUnit("spindle", "s")
+    move = MC_MoveVelocity(unit)
+    move(True, velocity=500.0, acceleration=100.0)
+    assert (move.error_id, move.error_text, unit.given) == (
+        22170,
+        "spindle s: MC_MoveVelocity refused: a spindle has the ramps of its gear, no acceleration, deceleration or jerk "
+        "is possible; nothing was changed",
+        [],
+    )
 
 
 def test_mc_stop_that_is_refused_holds_nothing() -> None:
@@ -252,22 +279,76 @@ def test_an_endless_motion_that_comes_to_rest_by_itself_is_an_error() -> None:
 def test_in_gear_of_a_spindle_is_what_the_spindle_reports() -> None:
     unit = FakeUnit("spindle", "s")
     gear = MC_GearIn(unit)
-    gear(True, master=FakeUnit("spindle", "m"))
+    master = FakeUnit("spindle", "m")
+    gear(True, master=master, ratio_numerator=-2.0)
     unit.last.tells = ACCEPTED
     unit.block = spindle_block(master_wanted="m")
     gear(True)
     assert (gear.in_gear, outputs(gear)) == (False, "busy")
-    unit.block = spindle_block(master="m")
-    gear(True)
-    assert (gear.in_gear, outputs(gear)) == (True, "busy active")
+    for reached, speed, of_master, in_gear in (
+        (False, -200.0, 100.0, False),
+        (True, -200.0, 100.0, True),
+        (True, 0.0, 100.0, False),
+        (True, 200.0, 100.0, False),
+        (True, 0.0, 0.0, True),
+    ):
+        unit.block = spindle_block(master="m", speed_reached=[reached], set_speed_rpm=[speed])
+        master.block = spindle_block(set_speed_rpm=[of_master])
+        gear(True)
+        assert (gear.in_gear, outputs(gear)) == (in_gear, "busy active")
     unit.block = spindle_block()
     gear(True)
     assert (gear.in_gear, outputs(gear)) == (False, "command_aborted")
     gear(False)
     gear(True, master="m")
     unit.last.tells = ACCEPTED
+    unit.block = spindle_block(master="m", speed_reached=[True], set_speed_rpm=[5.0])
+    gear(True)
+    assert gear.in_gear  # by the name alone the speed of the master is not known
+    unit.block = spindle_block()
+    gear(True)
+    gear(False)
+    gear(True, master="m")
+    unit.last.tells = ACCEPTED
     gear(True)
     assert (gear.error_id, gear.error_text) == (22167, "spindle s: m was not granted as its master")
+
+
+def test_mc_gear_in_changes_the_ratio_of_an_axis_that_is_in_gear() -> None:
+    """x goes from 0 to 60 at 100 mm/s from 0.5 s on; y follows with 1, and with 2 from 0.8 s on (30 mm of x)."""
+
+    def make(io: PlcIo) -> Recorder:
+        x, y = io.axis("x"), io.axis("y")
+        gear, again, move, out = MC_GearIn(y), MC_GearIn(y), MC_MoveAbsolute(x), MC_GearOut(y)
+
+        def step(io: PlcIo, n: int) -> str:
+            gear(1 <= n < 20, master=x)
+            move(n >= 50, position=60.0, velocity=100.0)
+            again(n >= 80, master="x", ratio_numerator=2.0)
+            out(n >= 160)
+            io.done(n > 170)
+            return outputs(again) + " in_gear" * again.in_gear
+
+        return Recorder(step)
+
+    bench = PlcBench(make).run()
+    assert bench.plc.seen == ["", "busy", "busy active in_gear", "command_aborted"] and not bench.refusals()
+    x = bench.column("x", "set_position")[800]  # y is continuous in the cycle of the command
+    assert 20.0 < x < 35.0 and bench.position("y") == pytest.approx(x + 2.0 * (60.0 - x), abs=1e-9)
+    assert [record.command for record in bench.records if record.target == "y"] == [
+        "couple", "set_coupling_factor", "decouple",
+    ]  # fmt: skip
+
+
+def test_a_new_ratio_for_another_kind_of_coupling_is_refused_with_its_reason() -> None:
+    unit = FakeUnit("axis", "y")
+    unit.block = axis_block(S.SYNCHRONIZED_MOTION, master="x", job=7)
+    gear = MC_GearIn(unit)
+    gear(True, master="x", ratio_numerator=2.0)
+    assert (unit.last.command, unit.last.arguments) == ("set_coupling_factor", {"factor": 2.0})
+    unit.last.tells = REFUSED
+    gear(True)
+    assert gear.error and gear.error_id == 23005
 
 
 def test_mc_power_gives_enable_and_feed_releases_when_they_change() -> None:
@@ -537,6 +618,7 @@ def test_stop_in_the_brake_phase_is_an_ordinary_one() -> None:
     assert bench.plc.seen == ["", "busy", "busy active", "done"] and bench.position("x") == 1000.0
     assert [(record.command, record.error_id) for record in bench.records[1:]] == [
         ("emergency_stop", 23017),
+        ("hold_stop", 0),
         ("stop", 0),
     ]
 

@@ -131,3 +131,20 @@ def test_the_axis_goes_forward_and_backward_twice() -> None:
     assert [abs(position[begin + cycles(seconds) - 1] - position[end]) > 1e-9 for begin, end in moving] == [True] * 4
     assert [float(position[end]) for _, end in moving] == [2000.0, 0.0, 2000.0, 0.0]
     assert moving[0][0] == 210  # 0.2 s of waiting, one PLC cycle for the edge
+
+
+def test_the_axis_is_homed_by_cam_and_zero_pulse() -> None:
+    """The cam begins at 0, its zero pulse is 0.001 mm behind that in the negative direction, and is called 100 mm."""
+    run = Run("plc_homing", PTP)
+    position, velocity = run.column("x", "set_position"), run.column("x", "set_velocity")
+    state = [S(value) for value in run.column("x", "state")]
+    order = [each for each, before in zip(state, [None, *state], strict=False) if each != before]
+    motion = [S.DISCRETE_MOTION, S.STANDSTILL]
+    assert order == [S.STANDSTILL, *motion, S.HOMING, S.STANDSTILL, *motion]
+    assert position[state.index(S.HOMING)] == 30.0 and position[-1] == 150.0
+    (shifted,) = np.flatnonzero(np.abs(np.diff(position)) > 5.0)
+    moved = velocity[shifted] * 0.001
+    assert position[shifted + 1] - position[shifted] - moved == pytest.approx(100.001, abs=1e-3)
+    assert abs(velocity[shifted]) == pytest.approx(16.666) and velocity.min() == -83.333
+    (told,) = run.texts()
+    assert told[1] == "plc plc: x is homed, its zero pulse is at 100 mm"

@@ -102,7 +102,7 @@ FAULTS = [
     (
         "- {at: 0, to: plc, do: fly}",
         "plc plc: unknown command 'fly'; nothing was changed. Known: acknowledge, auto_acknowledge, "
-        "emergency_stop, reset, serve, set_input, set_life_sign, stop_all",
+        "emergency_stop, follow_trajectory, reset, serve, set_input, set_life_sign, stop_all",
     ),
     (
         "- {at: 0, to: x, do: power, enabled: yes}",

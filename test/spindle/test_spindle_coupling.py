@@ -117,9 +117,24 @@ def test_a_slave_keeps_within_its_own_limits() -> None:
 def test_a_slave_takes_no_motion_from_others_but_a_stop() -> None:
     run = coupled("- {at: 0.1, to: s, do: start, direction: cw, speed_rpm: 1000.0}").run(0.5)
     assert run.refusal("t", "start", direction="cw", speed_rpm=5.0) == refused(24022, master="s")
-    assert run.give("t", "stop").accepted
+    record = run.give("t", "stop")
+    assert record.accepted and record.message == "spindle t: stop ends the coupling to s"
     run.run(0.3)
     assert run.column("t", "set_speed_rpm")[-1] == 0.0 and run.column("s", "set_speed_rpm")[-1] == 1000.0
+    assert run.last("t").master == ""
+    run.give("s", "set_speed", speed_rpm=400.0)
+    run.run(0.3)
+    assert run.column("t", "set_speed_rpm")[-1] == 0.0 and run.column("s", "set_speed_rpm")[-1] == 400.0
+    assert run.give("t", "start", direction="cw", speed_rpm=5.0).accepted
+
+
+def test_a_stop_withdraws_a_coupling_that_the_plc_has_not_granted_yet() -> None:
+    run = coupled("- {at: 0.1, to: s, do: start, direction: cw, speed_rpm: 1000.0}").run(0.05)
+    run.give("t", "decouple")
+    run.give("t", "couple", master="s")
+    assert run.give("t", "stop").message == "spindle t: stop ends the coupling to s"
+    run.run(0.4)
+    assert run.last("t").master == "" and not any(run.column("t", "set_speed_rpm"))
 
 
 def test_after_decoupling_the_spindle_goes_on_alone() -> None:

@@ -1,22 +1,23 @@
 """Every command in every state: units brought into each state by commands, and their answers as tables.
 
-`python test/support/answer_support.py` prints the tables as the units answer now.
+`python test/support/answer_support.py` writes the tables of docs/answers.md as the units answer now.
 """
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from axis_states_support import path_block
-from machine_support import CYCLE_TIME, MachineBench, UnitBench, axis_parameters, spindle_parameters
-from spindle_support import bench_of
+from machine_support import CYCLE_TIME, MILL, MachineBench, UnitBench, axis_parameters, spindle_parameters
+from sercos_support import sercos_axis
+from spindle_support import bench_of, two_gears
 
 from cnc_ptp.axis.axis_unit import AxisUnit
+from cnc_ptp.parameters import AxisParameters, MachineParameters, SpindleParameters, read_machine
 from cnc_ptp.protocol.axis_states import AxisStateCode
 from cnc_ptp.protocol.blocks import AxisBlock
 from cnc_ptp.protocol.channel_states import ChannelStateCode
@@ -31,7 +32,10 @@ Give = Callable[..., Any]
 
 @dataclass
 class Situation:
-    """A unit in one of its states: its column in the table, the state, and how it gets there."""
+    """A unit in one of its states: its column in the table, the state, and how it gets there.
+
+    The state is that inside: a unit that MC_Stop holds reports Stopping instead of Standstill.
+    """
 
     column: str
     state: AxisStateCode | ChannelStateCode
@@ -71,6 +75,7 @@ AXIS_ROWS: dict[str, tuple[str, dict[str, Any]]] = {
     "set_override": ("set_override", {"percent": 80.0}),
     "set_override_type": ("set_override_type", {"type": 2}),
     "stop": ("stop", {}),
+    "hold_stop": ("hold_stop", {"enabled": True}),
     "halt": ("halt", {}),
     "emergency_stop": ("emergency_stop", {"deceleration": 20_000.0, "jerk": 500_000.0}),
     "jog": ("jog", {"velocity": 30.0}),
@@ -122,8 +127,8 @@ AXIS_ROWS: dict[str, tuple[str, dict[str, Any]]] = {
 class AxisBench(UnitBench):
     """An axis that counts modulo, beside a standing axis y that may be its master."""
 
-    def __init__(self) -> None:
-        x = axis_parameters(modulo=True, modulo_high=360.0)
+    def __init__(self, x: AxisParameters | None = None) -> None:
+        x = x or axis_parameters(modulo=True, modulo_high=360.0)
         others = {name: axis_parameters(name=name) for name in ("y", "z")}
         super().__init__(AxisUnit(x, cycle_time=CYCLE_TIME, axes={"x": x, **others}))
         self.sources: Callable[[], dict[str, Any]] = dict
@@ -146,8 +151,10 @@ class AxisBench(UnitBench):
         }
 
 
-def axis_situation(steps: Callable[[AxisBench], None]) -> tuple[Give, Callable[[], int]]:
-    bench = AxisBench()
+def axis_situation(
+    steps: Callable[[AxisBench], None], make: Callable[[], AxisBench] = AxisBench
+) -> tuple[Give, Callable[[], int]]:
+    bench = make()
     bench.run(10)
     steps(bench)
     return bench.give, lambda: int(bench.unit._axis.state)  # type: ignore[attr-defined]
@@ -168,10 +175,17 @@ def on_path(bench: AxisBench) -> None:
     bench.run(20)
 
 
-def slave(bench: AxisBench) -> None:
+def slave(bench: AxisBench, command: str = "couple", **arguments: Any) -> None:
     bench.sources = bench.master
-    bench.accepted("couple", factor=1.0, **COUPLED)
+    bench.accepted(command, **(arguments or {"factor": 1.0}), **COUPLED)
     bench.run(20)
+
+
+def sercos() -> AxisBench:
+    """An axis whose drive has a service channel, and homes it on its own."""
+    drive = sercos_axis(at=0.0)
+    x = axis_parameters(modulo=True, modulo_high=360.0, control=drive.control, homing=drive.homing)
+    return AxisBench(replace(x, referenced_at_start=True))
 
 
 def halting(bench: AxisBench, command: str = "halt") -> None:
@@ -203,9 +217,16 @@ AXIS = [
         ("ContinuousMotion: external", S.CONTINUOUS_MOTION, after("external_enable", 10, mode="absolute")),
         ("SynchronizedMotion: path", S.SYNCHRONIZED_MOTION, on_path),
         ("SynchronizedMotion: slave", S.SYNCHRONIZED_MOTION, slave),
+        ("SynchronizedMotion: cam", S.SYNCHRONIZED_MOTION, partial(slave, command="couple_cam", table=POINTS)),
+        ("SynchronizedMotion: cyclic", S.SYNCHRONIZED_MOTION, partial(slave, command="couple_cyclic", acc_bound=5e4)),
         ("Stopping", S.STOPPING, partial(halting, command="stop")),
+        ("Stopping: MC_Stop held", S.STANDSTILL, after("hold_stop", 10, enabled=True)),
         ("ErrorStop", S.ERROR_STOP, error_stop),
     )
+]
+AXIS += [
+    Situation("Standstill: SERCOS", S.STANDSTILL, partial(axis_situation, lambda bench: None, sercos)),
+    Situation("Homing: by the drive", S.HOMING, partial(axis_situation, after("home", 5), sercos)),
 ]
 
 # ---------------------------------------------------------------- spindle
@@ -216,6 +237,7 @@ SPINDLE_ROWS: dict[str, tuple[str, dict[str, Any]]] = {
     "start": ("start", {"direction": "cw", "speed_rpm": 500.0}),
     "set_speed": ("set_speed", {"speed_rpm": 800.0}),
     "stop": ("stop", {}),
+    "hold_stop": ("hold_stop", {"enabled": True}),
     "orient": ("orient", {"position_deg": 90.0}),
     "home": ("home", {}),
     "set_override": ("set_override", {"percent": 80.0}),
@@ -240,8 +262,10 @@ SPINDLE_ROWS: dict[str, tuple[str, dict[str, Any]]] = {
 }
 
 
-def spindle_situation(*steps: tuple[str, dict[str, Any], int]) -> tuple[Give, Callable[[], int]]:
-    bench = bench_of(spindle_parameters(), spindles=("s", "t"))
+def spindle_situation(
+    *steps: tuple[str, dict[str, Any], int], make: Callable[[], SpindleParameters] = spindle_parameters
+) -> tuple[Give, Callable[[], int]]:
+    bench = bench_of(make(), spindles=("s", "t"))
     bench.run(10)
     for command, arguments, cycles in steps:
         bench.accepted(command, **arguments)
@@ -263,8 +287,16 @@ SPINDLE = [
         ("ContinuousMotion", S.CONTINUOUS_MOTION, [START]),
         ("SynchronizedMotion", S.SYNCHRONIZED_MOTION, [("follow_path", {"source": "channel"}, 0)]),
         ("Stopping", S.STOPPING, [START, ("stop", {}, 10)]),
+        ("Stopping: MC_Stop held", S.STANDSTILL, [("hold_stop", {"enabled": True}, 10)]),
         ("ErrorStop", S.ERROR_STOP, [("upstream_lost", {"source": "plc"}, 10)]),
     )
+]
+
+SLAVE = ("couple", {"master": "t"}, 0), ("coupling_answer", {"granted": True, "reason": ""}, 10)
+GEAR_CHANGE = ("select_gear", {"stage": 2}, 300)
+SPINDLE += [
+    Situation("Standstill: slave", S.STANDSTILL, partial(spindle_situation, *SLAVE)),
+    Situation("Standstill: gear change", S.STANDSTILL, partial(spindle_situation, GEAR_CHANGE, make=two_gears)),
 ]
 
 # ---------------------------------------------------------------- channel
@@ -293,12 +325,18 @@ CHANNEL_ROWS: dict[str, tuple[str, dict[str, Any]]] = {
 
 MOVE, WAIT, STOP = "%P\nG01 X100 F6000\nM30", "%P\nM08\nG01 X20 F3000\nM30", "%P\nM00\nG01 X20 F3000\nM30"
 
+MEASURE, PROBE = "%P\nG100 X60 F600\nM30", read_machine(PAGE.parents[1] / "examples" / "probe.yaml")
+
 
 def channel_situation(
-    program: str | None, *steps: tuple[str, str, dict[str, Any], float], start: bool = True, seconds: float = 0.1
+    program: str | None,
+    *steps: tuple[str, str, dict[str, Any], float],
+    start: bool = True,
+    seconds: float = 0.1,
+    machine: MachineParameters = MILL,
 ) -> tuple[Give, Callable[[], int]]:
     """A channel with a program, then commands to units, each followed by some seconds."""
-    bench = MachineBench(program, start=start, end_when_idle=False).run(seconds)
+    bench = MachineBench(program, machine=machine, start=start, end_when_idle=False).run(seconds)
     for unit, command, arguments, time in steps:
         assert bench.give(unit, command, **arguments).accepted
         bench.run(time)
@@ -309,6 +347,7 @@ CHANNEL = [
     Situation("Idle", C.IDLE, partial(channel_situation, None)),
     Situation("Ready", C.READY, partial(channel_situation, MOVE, start=False)),
     Situation("Running", C.RUNNING, partial(channel_situation, MOVE)),
+    Situation("Running: G100", C.RUNNING, partial(channel_situation, MEASURE, machine=PROBE)),
     Situation("Hold", C.HOLD, partial(channel_situation, MOVE, ("channel", "feed_hold", {"enabled": True}, 0.2))),
     Situation(
         "Waiting",
@@ -373,6 +412,16 @@ def written(kind: str) -> Iterator[str]:
         yield f"| `{row}` | {' | '.join(found[column][row] for column in columns)} |"
 
 
+def write_page() -> None:
+    """Exchanges the tables of the page."""
+    text = PAGE.read_text(encoding="utf-8")
+    for kind, headline in HEADLINES.items():
+        before, section = text.split(f"\n## {headline}\n")
+        begin = section.index("| command | ")
+        end = section.index("\n\n", begin)
+        text = f"{before}\n## {headline}\n{section[:begin]}" + "\n".join(written(kind)) + section[end:]
+    PAGE.write_text(text, encoding="utf-8")
+
+
 if __name__ == "__main__":
-    for kind in HEADLINES:
-        sys.stdout.write(f"## {HEADLINES[kind]}\n" + "\n".join(written(kind)) + "\n\n")
+    write_page()

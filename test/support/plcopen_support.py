@@ -15,6 +15,7 @@ from cnc_ptp.plc.program.plc_program import PlcFile
 from cnc_ptp.plc.scenario import parse_scenario
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.blocks import AxisBlock, CommandAnswer, CycleBlock, SpindleBlock
+from cnc_ptp.protocol.commands import COMMANDS
 from cnc_ptp.protocol.jobs import JobStatus
 
 WAITS, ACTIVE, DONE, ABORTED, FAILED, REFUSED, ACCEPTED = (
@@ -45,10 +46,17 @@ class FakeUnit:
         self.kind, self.name = kind, name
         self.stops = 0
         self.given: list[Given] = []
+        self.holds: list[bool] = []
+        """What it was told by hold_stop, which is answered to nobody."""
         self.block: CycleBlock | None = None
         self.parameters: dict[str, float] = {}
 
     def give(self, command: str, **arguments: Any) -> int:
+        specification = COMMANDS[self.kind].get(command)
+        assert specification is not None and arguments.keys() <= specification.keys(), (command, arguments)
+        if command == "hold_stop":
+            self.holds.append(arguments["enabled"])
+            return 0
         self.given.append(Given(command, arguments))
         return len(self.given)
 

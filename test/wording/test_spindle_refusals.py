@@ -12,7 +12,7 @@ from spindle_support import bench_of, two_gears
 Ask = Callable[[], UnitBench]
 SPINDLES = ("s", "t", "u")
 KNOWN = (
-    "couple, decouple, feed_hold, gear_changed, home, orient, overlay, power, reset, reset_feedforward, reset_limits, "
+    "couple, decouple, feed_hold, gear_changed, hold_stop, home, orient, overlay, power, reset, reset_feedforward, reset_limits, "
     "select_gear, "
     "set_feedforward, set_limits, set_override, set_speed, start, stop, stop_at_program_end, suppress_override"
 )

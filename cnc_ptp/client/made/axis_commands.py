@@ -243,6 +243,13 @@ class AxisCommands(Asking):
         """Stops on the ramp; new targets wait until the axis is at a standstill."""
         return self._job("stop")
 
+    def hold_stop(self, enabled: bool) -> Answer:
+        """Keeps the axis in Stopping: what would move it is refused (22165) until it is off; MC_Stop.
+
+        enabled  on or off
+        """
+        return self._answer("hold_stop", enabled=enabled)
+
     def halt(self) -> Job:
         """Stops on the ramp; a new target acts immediately."""
         return self._job("halt")

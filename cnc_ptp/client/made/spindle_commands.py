@@ -42,6 +42,13 @@ class SpindleCommands(Asking):
         """
         return self._job("stop", source=source)
 
+    def hold_stop(self, enabled: bool) -> Answer:
+        """Keeps the spindle in Stopping: what would turn it is refused (22165) until it is off; MC_Stop.
+
+        enabled  on or off
+        """
+        return self._answer("hold_stop", enabled=enabled)
+
     def orient(
         self,
         position_deg: float,

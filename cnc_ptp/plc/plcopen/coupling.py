@@ -12,6 +12,8 @@ from cnc_ptp.protocol.axis_states import AxisStateCode
 from cnc_ptp.protocol.blocks import AxisBlock, SpindleBlock
 
 Master = UnitReference | str
+SPEED_BAND = 1e-3
+"""Part of the speed of a master by which its slave may differ, as P-AXIS-00217 has it without a value."""
 
 
 class SlaveBlock(EndlessBlock):
@@ -20,8 +22,11 @@ class SlaveBlock(EndlessBlock):
     def __init__(self, unit: UnitReference) -> None:
         super().__init__(unit)
         self._master = ""
+        self._master_unit: UnitReference | None = None
+        self._ratio = 1.0
 
     def _couple(self, command: str, master: Master, **arguments: Any) -> None:
+        self._master_unit = None if isinstance(master, str) else master
         self._master = master if isinstance(master, str) else master.name
         self._start(command, master=self._master, **arguments)
 
@@ -36,11 +41,19 @@ class SlaveBlock(EndlessBlock):
         if not isinstance(block, SpindleBlock) or block.master_wanted == self._master:
             return
         if block.master == self._master:
-            self.active = self._reached = True
-        elif self._reached:
+            self.active, self._reached = True, self._turns_along(block)
+        elif self.active:
             self._abort()
         else:
             self._fail(NOT_GRANTED, f"{self._where}: {self._master} was not granted as its master")
+
+    def _turns_along(self, block: SpindleBlock) -> bool:
+        """The spindle has its speed, which is that of its master times the ratio, as far as that is known here."""
+        master = None if self._master_unit is None else self._master_unit.block
+        if not (block.speed_reached[-1] and isinstance(master, SpindleBlock)):
+            return block.speed_reached[-1]
+        wanted = self._ratio * master.set_speed_rpm[-1]
+        return abs(block.set_speed_rpm[-1] - wanted) <= SPEED_BAND * abs(wanted)
 
     def _job_done(self) -> None:
         """The axis could not follow its master, or its coupling has ended."""
@@ -48,7 +61,15 @@ class SlaveBlock(EndlessBlock):
 
 
 class MC_GearIn(SlaveBlock):
-    """Couples the unit to a master with a ratio: it moves by numerator / denominator times the way of the master."""
+    """Couples the unit to a master with a ratio: it moves by numerator / denominator times the way of the master.
+
+    An axis that is the linear slave of this master already takes the new ratio over, in motion too.
+    """
+
+    def __init__(self, unit: UnitReference) -> None:
+        super().__init__(unit)
+        self._coupling_job = 0
+        """Of the coupling whose ratio is changed."""
 
     @property
     def in_gear(self) -> bool:
@@ -59,11 +80,29 @@ class MC_GearIn(SlaveBlock):
     ) -> None:
         if not self._rises(execute):
             return
+        factor = ratio_numerator / ratio_denominator if ratio_denominator else ratio_numerator * float("inf")
+        self._ratio = factor
         if self.unit.kind == "spindle":
             self._couple("couple", master, factor_num=ratio_numerator, factor_den=ratio_denominator)
         else:
-            factor = ratio_numerator / ratio_denominator if ratio_denominator else ratio_numerator * float("inf")
+            self._gear_axis(master, factor)
+
+    def _gear_axis(self, master: Master, factor: float) -> None:
+        block, name = self.unit.block, master if isinstance(master, str) else master.name
+        engaged = isinstance(block, AxisBlock) and block.state[-1] == AxisStateCode.SYNCHRONIZED_MOTION
+        if engaged and isinstance(block, AxisBlock) and block.master == name:
+            self._master, self._coupling_job = name, block.job
+            self._start("set_coupling_factor", factor=factor)
+        else:
             self._couple("couple", master, factor=factor)
+
+    def _follow_unit(self) -> None:
+        """A new ratio is no job: the job of the coupling is followed."""
+        if self.unit.kind == "spindle":
+            super()._follow_unit()
+        elif self._coupling_job:
+            self._job, self._coupling_job = self._coupling_job, 0
+            self._follow_job()
 
 
 class MC_CamIn(SlaveBlock):

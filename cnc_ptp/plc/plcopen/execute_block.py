@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import Any, ClassVar
 
 from cnc_ptp.plc.plcopen.buffer_mode import SPINDLE_MODES, mode_arguments
-from cnc_ptp.plc.plcopen.faults import BAD_BUFFER_MODE, CAME_TO_REST, STOP_HOLDS
+from cnc_ptp.plc.plcopen.faults import BAD_BUFFER_MODE, CAME_TO_REST
 from cnc_ptp.plc.plcopen.unit_reference import UnitReference
 from cnc_ptp.protocol.jobs import JobStatus
+from cnc_ptp.protocol.unit import STOP_HOLDS
 
 UNANSWERED = -1
 

@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 from cnc_ptp.axis.faults import IN_BRAKE_PHASE
 from cnc_ptp.plc.plcopen.buffer_mode import ABORTING
 from cnc_ptp.plc.plcopen.execute_block import EndlessBlock, ExecuteBlock
+from cnc_ptp.plc.plcopen.faults import NO_RAMPS
 from cnc_ptp.plc.plcopen.unit_reference import UnitReference
 from cnc_ptp.protocol.blocks import AxisBlock, SpindleBlock
 
@@ -127,9 +128,12 @@ class MC_MoveVelocity(EndlessBlock):
             return
         self._velocity = velocity
         ramps = dynamics_of(acceleration, deceleration, jerk)
-        if self.unit.kind == "spindle":
+        if self.unit.kind == "spindle" and any(value is not None for value in ramps.values()):
+            reason = "a spindle has the ramps of its gear, no acceleration, deceleration or jerk is possible"
+            self._fail(NO_RAMPS, f"{self._where}: MC_MoveVelocity refused: {reason}; nothing was changed")
+        elif self.unit.kind == "spindle":
             turn = {"direction": "ccw" if velocity < 0.0 else "cw", "speed_rpm": abs(velocity)}
-            self._start("start", buffer_mode, **turn, **ramps)
+            self._start("start", buffer_mode, **turn)
         else:
             self._start("move_velocity", buffer_mode, velocity=velocity, **ramps)
 
@@ -151,9 +155,10 @@ class MC_Halt(ExecuteBlock):
 
 
 class MC_Stop(ExecuteBlock):
-    """Stops, and holds the unit at its standstill while `execute` is true: no other block moves it then.
+    """Stops, and holds the unit in Stopping until that is done and `execute` is false: nobody moves it then.
 
-    With `deceleration` or `jerk` an axis stops on a ramp of its own, never weaker than that of the motion.
+    With `deceleration` or `jerk` an axis stops on a ramp of its own, never weaker than that of the motion. A spindle
+    stops on the ramp of its gear in any case.
     """
 
     moves = False
@@ -163,16 +168,23 @@ class MC_Stop(ExecuteBlock):
         self._holds = False
 
     def __call__(self, execute: bool, deceleration: float | None = None, jerk: float | None = None) -> None:
-        if self._rises(execute):
-            own_ramp = deceleration is not None or jerk is not None
-            self._hold(True)
-            self._start("emergency_stop" if own_ramp else "stop", deceleration=deceleration, jerk=jerk)
-        elif not self.execute or self.error:
-            self._hold(False)
+        if not self._rises(execute):
+            if self.error or not (self.execute or self.busy):
+                self._hold(False)
+            return
+        if self.unit.kind == "spindle" or (deceleration is None and jerk is None):
+            self._start("stop")
+        else:
+            self._start("emergency_stop", deceleration=deceleration, jerk=jerk)
+        self._hold(True)
 
     def _hold(self, holds: bool) -> None:
+        """The first block that holds the unit and the last one give the command."""
+        before = self.unit.stops
         self.unit.stops += int(holds) - int(self._holds)
         self._holds = holds
+        if bool(self.unit.stops) != bool(before):
+            self.unit.give("hold_stop", enabled=holds)
 
     def _refused(self, error_id: int, text: str) -> None:
         """An axis that brakes naturally takes no stronger ramp, but a stop."""

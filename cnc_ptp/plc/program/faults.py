@@ -11,10 +11,15 @@ BAD_PLC_FILE = 25104
 """It cannot be used; nothing was started."""
 PLC_RAISED = 22161
 PLC_TOO_LONG = 22162
+PLC_BEHIND = 22163
 
 
 class CycleTooLong(BaseException):
     """Raised within a PLC cycle by the node that watches its time; `except Exception` of the PLC does not catch it."""
+
+
+class CyclesBehind(BaseException):
+    """Raised behind a PLC cycle by that node: many cycles have lasted longer than their blocks."""
 
 
 class PlcFault(NamedTuple):
@@ -37,6 +42,8 @@ def fault_of(error: BaseException, file: str) -> PlcFault:
     where = place(file, line, text)
     if isinstance(error, CycleTooLong):
         return PlcFault(PLC_TOO_LONG, f"{where}: {error}", line)
+    if isinstance(error, CyclesBehind):
+        return PlcFault(PLC_BEHIND, f"{place(file, 0, '')}: {error}", 0)
     said = f": {error}" if str(error) else ""
     return PlcFault(PLC_RAISED, f"{where}: {type(error).__name__}{said}", line)
 

@@ -130,6 +130,13 @@ class PlcIo:
         self._commands.clear()
         return commands
 
+    def release_stops(self) -> list[Command]:
+        """The PLC is not called again: what its MC_Stop hold is released."""
+        held = [unit for unit in self.units.values() if unit.stops]
+        for unit in held:
+            unit.stops = 0
+        return [Command(unit.name, "hold_stop", {"enabled": False}) for unit in held]
+
     def take_events(self) -> list[str]:
         events, self._events = self._events, []
         return events
