@@ -6,6 +6,7 @@ import sys
 import time
 from collections.abc import Iterable
 from functools import partial
+from math import isfinite
 from typing import Any
 
 import click
@@ -14,7 +15,7 @@ from cnc_ptp import msg
 from cnc_ptp.axis.jog_commands import JOG
 from cnc_ptp.machine.plc_file import read_plc
 from cnc_ptp.machine.run_entries import read_entries
-from cnc_ptp.machine.silence import Silence
+from cnc_ptp.machine.silence import Silence, patience_of
 from cnc_ptp.machine.wiring import build_unit
 from cnc_ptp.nodes import node_command_line, process
 from cnc_ptp.nodes.bridge.coupling_services import CouplingServices
@@ -73,7 +74,7 @@ class PlcBridgeNode(UnitNode):
         if self.plc.program is not None:
             self.plc.program.guard = PlcWatch(machine.watchdog_ms)
         self._sequence: dict[str, int] = {}
-        self._life_sign_timeout = machine.life_sign_timeout_ms / 1000.0
+        self._life_sign_timeout = patience_of(machine.life_sign_timeout_ms)
         self._life_sign_counter: int | None = None
         self._channels = list(machine.channels)
         self._life_signs = Silence(self._life_sign_timeout)
@@ -99,7 +100,8 @@ class PlcBridgeNode(UnitNode):
         self._emergency_stop = EmergencyStopTopics(self, self.plc)
         self.create_timer(JOG_PATIENCE / 4.0, self._watch_jogs)
         self.create_subscription(msg.LifeSign, LIFE_SIGN, self._on_life_sign, PLC_INPUT)
-        self.create_timer(self._life_sign_timeout / 4.0, self._watch_topics)
+        if isfinite(self._life_sign_timeout):
+            self.create_timer(self._life_sign_timeout / 4.0, self._watch_topics)
         self._answers = CouplingServices(self, self.plc, list(self._machine.axes))
         SetpointServices(self, self.plc, self._machine.axes)
         self._joints = JointStates(self, self._machine)

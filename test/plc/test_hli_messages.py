@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from hli_support import AXIS, SPINDLE, message
 
+from cnc_ptp.machine.silence import patience_of
 from cnc_ptp.plc.hli.messages import control_message, external_command
 from cnc_ptp.plc.hli.object_control import ObjectControl
 from cnc_ptp.protocol.blocks import AxisBlock, Command, CommandAnswer
@@ -20,14 +21,14 @@ TIMEOUT = 0.5
 class Object:
     """One object with its warnings; `block` gives the commands that go out."""
 
-    def __init__(self, kind: str = "axis") -> None:
+    def __init__(self, kind: str = "axis", *, timeout_ms: int = round(TIMEOUT * 1000.0)) -> None:
         self.told: list[tuple[int, str]] = []
         self.kind = kind
         self.control = ObjectControl(
             "x",
             kind,
             largest_override=150.0,
-            timeout=TIMEOUT,
+            timeout=patience_of(timeout_ms),
             tell=lambda number, text: self.told.append((number, text)),
         )
         self.now = 0.0
@@ -161,6 +162,13 @@ def test_a_plc_that_falls_silent_loses_the_object_and_what_it_has_commanded_hold
     assert x.control.holder is None and x.block() == []
     x.take("p2", override=60.0)
     assert x.block() == [("feed_hold", None, None), ("override", 60.0, "p2")]
+
+
+def test_without_a_timeout_a_plc_keeps_its_object() -> None:
+    x = Object(timeout_ms=0)
+    x.take("p1", override=50.0)
+    x.control.watch(1e9)
+    assert x.control.holder == "p1" and x.told == []
 
 
 def test_a_plc_that_comes_back_takes_its_object_again() -> None:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from typing import Any
 
-from cnc_ptp.machine.silence import Silence
+from cnc_ptp.machine.silence import Silence, patience_of
 from cnc_ptp.nodes.topics import VALUE_TOPICS
 from cnc_ptp.parameters import AxisParameters, ChannelParameters, MachineParameters, SpindleParameters
 from cnc_ptp.plc.hli.object_control import OUT_OF_SEQUENCE
@@ -40,7 +40,7 @@ class ValueTopics:
         self._plc = plc
         self._warn = warn
         self._timeout_text = f"{machine.life_sign_timeout_ms} ms"
-        timeout = machine.life_sign_timeout_ms / 1000.0
+        timeout = patience_of(machine.life_sign_timeout_ms)
         self._overrides, self._factors = Silence(timeout, rhythm=True), Silence(timeout)
         self._sequence: dict[str, int] = {}
         self._disordered: set[str] = set()

@@ -1,0 +1,77 @@
+"""A PLC that dies, in a graph: its motions are halted, what moves on its own is held; or nothing, where that is off."""
+
+import signal
+
+import rclpy
+from client_support import Client
+from graph_support import Running, one_axis_machine, verified
+from std_msgs.msg import Header
+
+from cnc_ptp import msg
+from cnc_ptp.nodes import process
+from cnc_ptp.nodes.topics import HLI_STATUS, PLC_INPUT
+from cnc_ptp.parameters import read_machine
+
+UNHEARD_DURATION = 300
+
+
+def client_of(machine):
+    """With the newest status of each axis and spindle."""
+    client = Client(read_machine(str(machine)))
+    client.start()
+    client.status = {}
+    for unit, kind in client.kinds.items():
+        if kind in ("axis", "spindle"):
+            client.create_subscription(
+                HLI_STATUS[kind], f"/{unit}/hli/status", lambda m, u=unit: client.status.update({u: m}), PLC_INPUT
+            )
+    client.wait_blocks("x", 1)
+    return client
+
+
+def close(client):
+    client.destroy_node()
+    client.executor_of_test.shutdown()
+    rclpy.try_shutdown()
+
+
+def told(client, number):
+    return [event.text for event in client.events if event.error_id == number]
+
+
+def command(kind, sequence, **fields):
+    of, external = (
+        (msg.AxisHliControl, msg.HliAxisCommand) if kind == "axis" else (msg.SpindleHliControl, msg.HliSpindleCommand)
+    )
+    header = Header(frame_id="p1")
+    return of(header=header, valid=True, sequence=sequence, external=external(semaphore=True, **fields))
+
+
+def test_a_timeout_of_0_watches_nothing(ros_domain, tmp_path):
+    machine, recording = one_axis_machine(tmp_path), tmp_path / "run.mcap"
+    text = machine.read_text()
+    machine.write_text(
+        text.replace("/machine:\n  ros__parameters:\n", "/machine:\n  ros__parameters:\n    life_sign_timeout_ms: 0\n")
+    )
+    assert read_machine(str(machine)).life_sign_timeout_ms == 0
+    graph = Running(machine, "--duration", UNHEARD_DURATION, "--record", recording)
+    try:
+        graph.wait_for_nodes(3)
+        process.initialise()
+        client = client_of(machine)
+        client.write("/plc/life_sign", msg.LifeSign, readers=2, counter=1)
+        override = msg.HliNumber(enable_w=True, command_w=40.0)
+        client.write(
+            "/x/hli/control", msg.AxisHliControl, readers=2, header=Header(frame_id="p1"), valid=True, override=override
+        )
+        client.shows("x", "override_percent", 40.0)
+        client.wait_blocks("plc", 100)
+        assert told(client, 26103) == told(client, 26165) == []
+        assert client.commands("x", "feed_hold") == []
+        client.spin_until(lambda: client.status["x"].holder == "p1", "the holder")
+        close(client)
+        graph.process.send_signal(signal.SIGINT)
+        graph.finish(expect=1)
+        verified(recording)
+    finally:
+        graph.end()
