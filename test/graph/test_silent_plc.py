@@ -4,13 +4,14 @@ import signal
 
 import rclpy
 from client_support import Client
-from graph_support import Running, one_axis_machine, verified
+from graph_support import Running, one_axis_machine, small_machine, verified
 from std_msgs.msg import Header
 
 from cnc_ptp import msg
 from cnc_ptp.nodes import process
 from cnc_ptp.nodes.topics import HLI_STATUS, PLC_INPUT
 from cnc_ptp.parameters import read_machine
+from cnc_ptp.protocol.axis_states import AxisStateCode
 
 UNHEARD_DURATION = 300
 
@@ -27,6 +28,11 @@ def client_of(machine):
             )
     client.wait_blocks("x", 1)
     return client
+
+
+def send(client, topic, message):
+    fields = {name: getattr(message, name) for name in message.get_fields_and_field_types()}
+    client.write(topic, type(message), readers=2, **fields)
 
 
 def close(client):
@@ -69,6 +75,39 @@ def test_a_timeout_of_0_watches_nothing(ros_domain, tmp_path):
         assert told(client, 26103) == told(client, 26165) == []
         assert client.commands("x", "feed_hold") == []
         client.spin_until(lambda: client.status["x"].holder == "p1", "the holder")
+        close(client)
+        graph.process.send_signal(signal.SIGINT)
+        graph.finish(expect=1)
+        verified(recording)
+    finally:
+        graph.end()
+
+
+def test_a_plc_that_dies_leaves_nothing_moving(ros_domain, tmp_path):
+    """Its external commands are halted; what a service moves is held; the path stands; each hold ends by a command."""
+    machine, recording = small_machine(tmp_path), tmp_path / "run.mcap"
+    graph = Running(machine, "--duration", UNHEARD_DURATION, "--record", recording)
+    try:
+        graph.wait_for_nodes(7)
+        process.initialise()
+        client = client_of(machine)
+        client.done("y", "move_absolute", target=150.0, velocity=2.0)
+        for number in range(1, 7):
+            client.write("/plc/life_sign", msg.LifeSign, readers=2, counter=number)
+            jog = command("axis", number, type=msg.HliAxisCommand.MOVE_VELOCITY, velocity=5.0)
+            send(client, "/x/hli/control", jog)
+            send(client, "/s/hli/control", command("spindle", number, type=msg.HliSpindleCommand.CW, speed=300.0))
+        assert client.status["x"].set_velocity == 5.0 and client.status["s"].set_speed_rpm == 300.0
+        client.spin_until(lambda: told(client, 26103) and len(told(client, 26165)) == 2, "the silence")
+        assert told(client, 26103)[0].endswith(" ms; feed hold is set on channel, s, x, y")
+        for unit in ("x", "y"):
+            client.wait_last(unit, lambda block: block.set_velocity[-1] == 0.0, "standstill")
+        client.wait_last("s", lambda block: block.set_speed_rpm[-1] == 0.0, "standstill")
+        client.spin_until(lambda: client.status["x"].state == AxisStateCode.STANDSTILL, "the end of its motion")
+        assert client.status["x"].holder == client.status["s"].holder == ""
+        assert client.status["y"].feed_hold.state_r and client.status["y"].state == AxisStateCode.DISCRETE_MOTION
+        client.switch("/y/feed_hold", False)
+        client.wait_last("y", lambda block: block.set_velocity[-1] == 2.0, "the motion again")
         close(client)
         graph.process.send_signal(signal.SIGINT)
         graph.finish(expect=1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any
 
@@ -191,8 +192,79 @@ def test_objects_whose_plc_is_silent_become_free() -> None:
     bench.hli.watch(9.0)
     bench.run(0.02)
     assert not bench.shown("x")["held"] and bench.shown("x")["override"]["enable_r"]
-    text = "no message of 'p1' for 500 ms; what it has commanded holds, and another PLC may take it"
+    text = "no message of 'p1' for 500 ms; the values that it has commanded hold, and another PLC may take it"
     assert bench.texts() == [f"26165 plc: HLI of x: {text}"]
+
+
+def test_an_endless_motion_ends_on_its_ramp_when_its_plc_falls_silent() -> None:
+    """Closed form of a ramp that does not reach its deceleration: v·sqrt(v / j)."""
+    bench = Machine(end_when_idle=False).run(0.1)
+    bench.say("x", external={**AXIS, "type": 6, "velocity": 40.0})
+    bench.run(1.5)
+    bench.hli.watch(bench.now + 0.51)
+    bench.run(0.02)
+    (halt,) = [record for record in bench.records if record.command == "halt"]
+    begin = bench.blocks["x"][halt.cycle // 10 - 1].set_position[-1]  # type: ignore[union-attr]
+    bench.run(2.0)
+    p = MILL.axes["x"]
+    assert p.deceleration**2 / p.jerk > 40.0
+    assert bench.position("x") - begin == pytest.approx(40.0 * (0.001 + math.sqrt(40.0 / p.jerk)), abs=1e-6)
+    assert bench.last("x").set_velocity[-1] == 0.0
+
+
+def test_a_spindle_stops_when_its_plc_falls_silent() -> None:
+    bench = Machine(end_when_idle=False).run(0.1)
+    bench.say("s", external=SPINDLE)
+    bench.run(2.0)
+    bench.hli.watch(bench.now + 0.51)
+    bench.run(3.0)
+    assert bench.last("s").set_speed_rpm[-1] == 0.0
+    text = "no message of 'p1' for 500 ms; its motion is stopped; the values that it has commanded hold"
+    assert bench.texts() == [f"26165 plc: HLI of s: {text}, and another PLC may take it"]
+
+
+def test_the_motion_of_a_service_goes_on_when_a_plc_falls_silent() -> None:
+    bench = Machine(end_when_idle=False).run(0.1)
+    bench.say("x", override=50.0)
+    bench.give("x", "move_absolute", target=100.0)
+    bench.run(0.1)
+    bench.hli.watch(bench.now + 0.51)
+    bench.run(10.0)
+    assert bench.position("x") == 100.0
+
+
+def test_a_second_plc_stops_the_motion_of_the_first_and_may_move_afterwards() -> None:
+    bench = Machine(end_when_idle=False).run(0.1)
+    bench.say("x", "p1", external={**AXIS, "position": 100.0, "velocity": 20.0})
+    bench.run(0.1)
+    bench.say("x", "p1", external={**AXIS, "semaphore": 0})
+    bench.run(0.5)
+    assert bench.shown("x")["holder"] == "p1"
+    bench.say("x", "p2", external={**AXIS, "position": 0.0})
+    bench.run(0.1)
+    assert bench.last("x").set_velocity[-1] == 20.0
+    bench.say("x", "p2", external={**AXIS, "semaphore": 0})
+    bench.say("x", "p2", external={**AXIS, "type": 1})
+    bench.run(1.0)
+    assert bench.last("x").set_velocity[-1] == 0.0 and bench.position("x") < 100.0
+    assert bench.shown("x")["holder"] == ""
+    refused = "'p2' commands it too and is refused while 'p1' holds it; nothing was changed"
+    stopped = "'p2' stops it while 'p1' holds it; the stop is carried out, nothing else was changed"
+    assert bench.texts() == [f"26162 plc: HLI of x: {text}" for text in (refused, stopped)]
+    bench.say("x", "p2", external={**AXIS, "semaphore": 0})
+    bench.say("x", "p2", external=AXIS)
+    bench.run(5.0)
+    assert bench.position("x") == 12.5
+
+
+def test_who_is_led_by_another() -> None:
+    bench = Machine("%P\nG01 X20 Y20 F3000\nM30", end_when_idle=False).run(0.3)
+    assert [unit for unit in ("channel", "x", "y", "s") if bench.plc.is_led(unit)] == ["x", "y"]
+    bench.run(2.0)
+    assert not bench.plc.is_led("x")
+    assert bench.give("x", "external_enable", mode="absolute").accepted
+    bench.run(0.02)
+    assert bench.plc.is_led("x")
 
 
 def test_what_is_no_number_is_0_in_the_integers_of_the_hli() -> None:

@@ -116,14 +116,13 @@ class ValueTopics:
         self._factors.heard(topic, time.monotonic())
         return Command(unit, "set_cyclic_factor", {"factor": message["factor"]})
 
-    def hold_feed(self, channel: str) -> None:
-        """A feed hold that only the next command of the PLC ends: its `off` counts as a change."""
-        topic = f"/{channel}/feed_hold"
+    def hold_feed(self, unit: str) -> None:
+        """A feed hold that only the next command of the PLC ends: whatever that is, it counts as a change."""
+        topic = f"/{unit}/feed_hold"
         self._served.add(topic)
-        hold = Command(channel, "feed_hold", {"enabled": True})
         self._newest.pop(topic, None)
-        self._last[topic] = hold.arguments_json
-        self._plc.input(hold)
+        self._last.pop(topic, None)
+        self._plc.input(Command(unit, "feed_hold", {"enabled": True}))
 
     def watch(self) -> None:
         """What has fallen silent: the last value holds, with a warning."""

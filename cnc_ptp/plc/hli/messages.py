@@ -40,6 +40,8 @@ SPINDLE_COMMANDS: Mapping[int, str] = {
     7: "select_gear",
 }
 """`type` of HliSpindleCommand -> command."""
+STOP = 1
+"""`type` of axes and spindles."""
 DIRECTIONS = {1: "cw", -1: "ccw", 2: "shortest"}
 
 
@@ -101,6 +103,11 @@ def in_si(external: dict[str, float]) -> None:
         external["velocity"] /= PER_SPEED
     else:
         external["speed"] /= PER_SPEED * DEG_S_PER_RPM
+
+
+def is_stop(message: ControlMessage) -> bool:
+    """Its external command is STOP."""
+    return message.semaphore and message.external["type"] == STOP
 
 
 def external_command(kind: str, name: str, external: Mapping[str, float]) -> Command | str:
