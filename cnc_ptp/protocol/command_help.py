@@ -182,6 +182,7 @@ ARGUMENT_TEXTS: Mapping[str, ArgumentText] = {
     "idn": ArgumentText("", "`S-0-` and four digits"),
     "control_unit": ArgumentText("", "of the unit ([hli_objects.md](hli_objects.md))"),
     "holder": ArgumentText("", "name of the PLC", "none"),
+    "silent": ArgumentText("", "the PLC has fallen silent: its value holds until others command the same", "off"),
     "unit": ArgumentText("", "a channel or a spindle"),
 }
 """By name; those that differ for single commands follow below."""

@@ -17,6 +17,7 @@ from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.plc.hli.hli import Hli
 from cnc_ptp.plc.hli.status import status
 from cnc_ptp.plc.plc_unit import PlcUnit
+from cnc_ptp.protocol.axis_states import AxisStateCode as A
 from cnc_ptp.protocol.blocks import Command
 from cnc_ptp.protocol.channel_states import ChannelStateCode as C
 
@@ -192,7 +193,7 @@ def test_objects_whose_plc_is_silent_become_free() -> None:
     bench.hli.watch(9.0)
     bench.run(0.02)
     assert not bench.shown("x")["held"] and bench.shown("x")["override"]["enable_r"]
-    text = "no message of 'p1' for 500 ms; the values that it has commanded hold, and another PLC may take it"
+    text = "no message of 'p1' for 500 ms; its values hold until others command them, and another PLC may take it"
     assert bench.texts() == [f"26165 plc: HLI of x: {text}"]
 
 
@@ -219,7 +220,7 @@ def test_a_spindle_stops_when_its_plc_falls_silent() -> None:
     bench.hli.watch(bench.now + 0.51)
     bench.run(3.0)
     assert bench.last("s").set_speed_rpm[-1] == 0.0
-    text = "no message of 'p1' for 500 ms; its motion is stopped; the values that it has commanded hold"
+    text = "no message of 'p1' for 500 ms; its motion is stopped; its values hold until others command them"
     assert bench.texts() == [f"26165 plc: HLI of s: {text}, and another PLC may take it"]
 
 
@@ -265,6 +266,31 @@ def test_who_is_led_by_another() -> None:
     assert bench.give("x", "external_enable", mode="absolute").accepted
     bench.run(0.02)
     assert bench.plc.is_led("x")
+
+
+def test_a_plc_that_is_silent_locks_nobody_out() -> None:
+    """Edges are free; a value is taken back by a command of others; its next message counts again."""
+    bench = Machine(end_when_idle=False).run(0.1)
+    bench.say("channel", reset=0.0, start=0.0)
+    bench.say("x", reset=0.0, override=30.0, controller_enable=1.0)
+    bench.run(0.02)
+    bench.hli.watch(bench.now + 0.51)
+    bench.run(0.02)
+    assert bench.shown("x")["override"]["state_r"] == 30.0
+    for unit in ("channel", "x"):
+        assert bench.give(unit, "reset").error_id != 26161
+    given = bench.give("x", "set_override", percent=80.0)
+    taken = "takes override back from the PLC 'p1', which had commanded 30 and is silent"
+    assert (given.accepted, given.message) == (True, f"P-WARN-26180 axis x: set_override {taken}")
+    bench.run(0.02)
+    assert bench.last("x").override_percent[-1] == 80.0
+    assert bench.shown("x")["override"]["enable_r"] is False
+    assert "takes controller_enable back from the PLC 'p1'" in bench.give("x", "power", enabled=False).message
+    bench.run(0.02)
+    assert bench.last("x").state[-1] == A.DISABLED
+    bench.say("x", override=30.0, controller_enable=1.0)
+    bench.run(0.02)
+    assert (bench.last("x").override_percent[-1], bench.last("x").state[-1]) == (30.0, A.STANDSTILL)
 
 
 def test_what_is_no_number_is_0_in_the_integers_of_the_hli() -> None:

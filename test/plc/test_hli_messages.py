@@ -62,7 +62,8 @@ def short(command: Command) -> tuple[Any, ...]:
         return command.command, given
     if not given["enabled"]:
         return given["control_unit"], None, None
-    return given["control_unit"], given["value"], given["holder"]
+    silent = ("silent",) if given.get("silent") else ()
+    return given["control_unit"], given["value"], given["holder"], *silent
 
 
 # ---------------------------------------------------------------- what goes out
@@ -161,9 +162,10 @@ def test_a_plc_that_falls_silent_loses_the_object_and_what_it_has_commanded_hold
     x.control.watch(x.now + TIMEOUT)
     assert x.control.holder == "p1"
     x.control.watch(x.now + TIMEOUT + 0.001)
-    text = "no message of 'p1' for 500 ms; the values that it has commanded hold, and another PLC may take it"
+    text = "no message of 'p1' for 500 ms; its values hold until others command them, and another PLC may take it"
     assert x.told == [(26165, f"plc: HLI of x: {text}")]
-    assert x.control.holder is None and x.block() == []
+    left = [("feed_hold", 1.0, "p1", "silent"), ("override", 50.0, "p1", "silent")]
+    assert x.control.holder is None and x.block() == left
     x.take("p2")  # a PLC that serves nothing takes nothing, and frees nothing
     assert x.control.holder is None and x.block() == []
     x.take("p2", override=60.0)
@@ -182,11 +184,36 @@ def test_a_plc_that_comes_back_takes_its_object_again() -> None:
     x.take("p1", override=50.0)
     x.block()
     x.control.watch(9.0)
+    assert x.block() == [("override", 50.0, "p1", "silent")]
+    assert not x.control.heard("p1", 1, 9.0)  # others may have commanded the value: the same message counts again
     x.take("p1", override=50.0)
-    assert x.control.holder == "p1" and x.block() == []
+    assert x.control.holder == "p1" and x.block() == [("override", 50.0, "p1")]
     x.control.watch(99.0)
+    x.block()
     x.take("p1")
     assert x.control.holder is None and x.block() == [("override", None, None)]
+
+
+def test_edges_of_a_plc_that_falls_silent_are_everybodys_again() -> None:
+    x = Object()
+    x.take(reset=1.0, override=50.0)
+    x.control.watch(9.0)  # an edge that has not gone out is not carried out without its PLC
+    assert x.block() == [("override", 50.0, "p1", "silent")]
+    x.take(reset=1.0, override=50.0)
+    x.block()
+    x.control.watch(99.0)
+    assert x.block() == [("override", 50.0, "p1", "silent"), ("reset", None, None)]
+    x.take(reset=1.0)  # still on: no new edge
+    assert x.block() == [("override", None, None), ("reset", 0.0, "p1")]
+
+
+def test_gear_changes_of_a_spindle_whose_plc_is_silent_wait_for_somebody() -> None:
+    """The machine does not say that a gear is in when it does not know: only a service, or the next PLC."""
+    s = Object("spindle")
+    s.take(gear_changed=0.0)
+    s.block()
+    s.control.watch(9.0)
+    assert s.block() == [("gear_changed", None, None)] and s.control.serves_functions
 
 
 def test_what_another_plc_had_on_is_no_edge_of_the_next() -> None:
@@ -206,7 +233,7 @@ def test_an_empty_message_releases_nothing() -> None:
     x.take("", valid=False)
     x.control.watch(9.0)
     x.take("", valid=False)
-    assert x.block() == []
+    assert x.block() == [("override", 50.0, "p1", "silent")]
 
 
 # ---------------------------------------------------------------- what does not count
@@ -389,7 +416,7 @@ def test_a_motion_is_halted_when_its_plc_falls_silent(semaphore: int) -> None:
     x.control.watch(x.now + TIMEOUT + 0.001)
     text = "no message of 'p1' for 500 ms; its motion is halted"
     assert x.told == [
-        (26165, f"plc: HLI of x: {text}; the values that it has commanded hold, and another PLC may take it")
+        (26165, f"plc: HLI of x: {text}; its values hold until others command them, and another PLC may take it")
     ]
     assert x.control.holder is None
     x.report(active=4)

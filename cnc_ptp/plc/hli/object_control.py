@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from math import isfinite
+from typing import Any, NamedTuple
 
 from cnc_ptp.plc.hli.external_jobs import ExternalJobs
 from cnc_ptp.plc.hli.messages import ControlMessage, external_command, is_stop
@@ -27,6 +28,15 @@ MOST_SOURCES = 16
 
 Tell = Callable[[int, str], None]
 """Takes a warning: number, text."""
+
+
+class Served(NamedTuple):
+    """What a PLC commands of a control unit."""
+
+    value: float
+    source: str
+    silent: bool = False
+    """The PLC has fallen silent: the value holds until others ask for another one."""
 
 
 class Answered:
@@ -74,9 +84,9 @@ class ObjectControl:
         self._heard = 0.0
         self._last_source = ""
         self._sequences: dict[str, int] = {}
-        self._wanted: dict[str, tuple[float, str]] = {}
-        """Control unit -> command and PLC; those that no PLC serves are missing."""
-        self._sent: dict[str, tuple[float, str]] = {}
+        self._wanted: dict[str, Served] = {}
+        """By control unit; those that no PLC serves are missing."""
+        self._sent: dict[str, Served] = {}
         self._high: set[str] = set()
         """Edges and the semaphore that are on in the last message, acknowledgements that are in it."""
         self._rising: dict[str, str] = {}
@@ -183,7 +193,7 @@ class ObjectControl:
             self.serves_functions, self.holder = False, None
 
     def _abandon(self) -> bool:
-        """Motions that the PLC has begun are halted, one that is still to begin does not begin; False if there are none."""
+        """Motions that the PLC has begun are halted, one still to begin does not begin; False if there are none."""
         moves, self._external_waits = self._moves, None
         self._jobs.abandon(unanswered=self.external.command is not None)
         return moves
@@ -196,7 +206,7 @@ class ObjectControl:
             elif not enabled:
                 self._wanted.pop(unit.name, None)
             elif self._is_good(unit, command):
-                self._wanted[unit.name] = command, message.source
+                self._wanted[unit.name] = Served(command, message.source)
         self.serves_functions = message.serves_functions or self._serves("gear_changed")
 
     def _serves(self, name: str) -> bool:
@@ -220,7 +230,7 @@ class ObjectControl:
         if not enabled:
             self._wanted.pop(unit.name, None)
         else:
-            self._wanted[unit.name] = 0.0, source
+            self._wanted[unit.name] = Served(0.0, source)
         if not (enabled and command):
             self._high.discard(unit.name)
         elif unit.name not in self._high:
@@ -267,9 +277,17 @@ class ObjectControl:
         if self.holder is not None and now - self._heard > self._timeout:
             moved = f"; its motion is {'stopped' if self.kind == 'spindle' else 'halted'}" if self._abandon() else ""
             text = f"no message of '{self.holder}' for {self._timeout * 1000.0:.0f} ms"
-            text += f"{moved}; the values that it has commanded hold, and another PLC may take it"
+            text += f"{moved}; its values hold until others command them, and another PLC may take it"
             self._tell(PLC_SILENT, self._text(text))
-            self.holder = None
+            self._free()
+
+    def _free(self) -> None:
+        """Edges that the PLC served are everybody's again; values hold until others ask for another one."""
+        self.holder = None
+        self._rising.clear()
+        levels = {name: served for name, served in self._wanted.items() if name not in self.edges}
+        self._wanted = {name: served._replace(silent=True) for name, served in levels.items()}
+        self._changed = self._news = True
 
     def hold_feed(self) -> None:
         """The life sign of the PLC is lost, and others set the feed hold: one that it serves is no longer its own.
@@ -292,8 +310,8 @@ class ObjectControl:
             wanted, sent = self._wanted.get(unit.name), self._sent.get(unit.name)
             if unit.name in self._rising:
                 source = self._rising[unit.name]
-                yield self.edges[unit.name].give(self._overlay(unit.name, (1.0, source)))
-                sent = 0.0, source
+                yield self.edges[unit.name].give(self._overlay(unit.name, Served(1.0, source)))
+                sent = Served(0.0, source)
             if wanted != sent:
                 yield self._overlay(unit.name, wanted)
         self._rising.clear()
@@ -305,11 +323,13 @@ class ObjectControl:
             yield self.external.give(self._external_waits)
             self._external_waits = None
 
-    def _overlay(self, name: str, wanted: tuple[float, str] | None) -> Command:
+    def _overlay(self, name: str, wanted: Served | None) -> Command:
         if wanted is None:
             return Command(self.name, "overlay", {"control_unit": name, "enabled": False})
-        value, holder = wanted
-        arguments = {"control_unit": name, "enabled": True, "value": value, "holder": holder}
+        value, holder, silent = wanted
+        arguments: dict[str, Any] = {"control_unit": name, "enabled": True, "value": value, "holder": holder}
+        if silent:
+            arguments["silent"] = True
         return Command(self.name, "overlay", arguments)
 
     def take_acknowledgements(self) -> list[int]:
