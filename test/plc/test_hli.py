@@ -213,6 +213,20 @@ def test_an_endless_motion_ends_on_its_ramp_when_its_plc_falls_silent() -> None:
     assert bench.last("x").set_velocity[-1] == 0.0
 
 
+def test_an_endless_motion_has_the_ramps_of_its_external_command() -> None:
+    """Acceleration as given; the same command again changes the velocity in motion, and 0 ends it."""
+    bench = Machine(end_when_idle=False).run(0.1)
+    for velocity, at_end in ((40.0, 40.0), (-20.0, -20.0), (0.0, 0.0)):
+        bench.say("x", external={**AXIS, "type": 6, "velocity": velocity, "acceleration": 80.0, "deceleration": 60.0})
+        bench.run(3.0)
+        assert bench.last("x").set_velocity[-1] == at_end
+        bench.say("x", external={**AXIS, "semaphore": 0})
+        bench.run(0.02)
+    accelerations = [a for block in bench.blocks["x"] for a in block.set_acceleration]  # type: ignore[union-attr]
+    assert max(accelerations) == pytest.approx(80.0) and -80.0 <= min(accelerations) <= -60.0
+    assert bench.texts() == []
+
+
 def test_a_spindle_stops_when_its_plc_falls_silent() -> None:
     bench = Machine(end_when_idle=False).run(0.1)
     bench.say("s", external=SPINDLE)

@@ -17,6 +17,7 @@ from cnc_ptp.protocol.control_units import CONTROL_UNITS
 from cnc_ptp.protocol.jobs import JobStatus
 
 TIMEOUT = 0.5
+ABORTING = {"buffer_mode": "aborting"}
 
 
 class Object:
@@ -325,9 +326,21 @@ def test_the_same_message_again_is_only_heard() -> None:
         ({"velocity": 5.0}, "move_absolute", {"target": 12.5, "velocity": 5.0}),
         ({"type": 4, "jerk": 9.0}, "move_relative", {"distance": 12.5, "jerk": 9.0}),
         ({"type": 5}, "move_modulo", {"position": 12.5}),
-        ({"type": 6, "velocity": -5.0}, "jog", {"velocity": -5.0}),
+        (
+            {"type": 5, "velocity": 4.0, "acceleration": 3.0, "deceleration": 2.0, "jerk": 1.0},
+            "move_modulo",
+            {"position": 12.5, "velocity": 4.0, "acceleration": 3.0, "deceleration": 2.0, "jerk": 1.0},
+        ),
+        ({"type": 6, "velocity": -5.0}, "move_velocity", {"velocity": -5.0, **ABORTING}),
+        (
+            {"type": 6, "velocity": -5.0, "acceleration": 3.0, "deceleration": 2.0, "jerk": 1.0},
+            "move_velocity",
+            {"velocity": -5.0, "acceleration": 3.0, "deceleration": 2.0, "jerk": 1.0, **ABORTING},
+        ),
+        ({"type": 6, "acceleration": 3.0}, "halt", {}),
         ({"type": 7}, "new_target", {"target": 12.5}),
-        ({"type": 8}, "home", {}),
+        ({"type": 8}, "home", {"position": 12.5}),
+        ({"type": 8, "position": 0.0}, "home", {}),
     ],
 )
 def test_external_commands_of_an_axis(changes: Mapping[str, float], command: str, arguments: Any) -> None:
