@@ -114,3 +114,33 @@ def test_a_plc_that_dies_leaves_nothing_moving(ros_domain, tmp_path):
         verified(recording)
     finally:
         graph.end()
+
+
+def test_a_machine_without_a_channel_is_held_too(ros_domain, tmp_path):
+    """And the next message of the PLC that serves the feed hold ends it: the axis continues to its target."""
+    machine, recording = one_axis_machine(tmp_path), tmp_path / "run.mcap"
+    graph = Running(machine, "--duration", UNHEARD_DURATION, "--record", recording)
+    try:
+        graph.wait_for_nodes(3)
+        process.initialise()
+        client = client_of(machine)
+        client.done("x", "move_absolute", target=5000.0, velocity=5.0)
+        client.write("/plc/life_sign", msg.LifeSign, readers=2, counter=1)
+        client.spin_until(lambda: told(client, 26103), "the silence")
+        text = "plc: no life sign of the external PLC for 1000 ms; feed hold is set on x"
+        assert told(client, 26103) == [text]
+        client.wait_last("x", lambda block: block.set_velocity[-1] == 0.0, "standstill")
+        assert client.status["x"].feed_hold.state_r
+        control = msg.AxisHliControl(header=Header(frame_id="p1"), valid=True)
+        control.feed_hold = msg.HliSwitch(enable_w=True, command_w=False)
+        send(client, "/x/hli/control", control)
+        client.wait_last("x", lambda block: block.set_velocity[-1] == 5.0, "the motion again")
+        send(client, "/x/hli/control", msg.AxisHliControl(header=Header(frame_id="p1")))
+        client.wait_blocks("plc", 50)
+        assert client.blocks["x"][-1].set_velocity[-1] == 5.0  # given back, nothing holds it
+        close(client)
+        graph.process.send_signal(signal.SIGINT)
+        graph.finish(expect=1)
+        verified(recording)
+    finally:
+        graph.end()

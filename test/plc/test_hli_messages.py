@@ -23,14 +23,14 @@ ABORTING = {"buffer_mode": "aborting"}
 class Object:
     """One object with its warnings; `block` gives the commands that go out."""
 
-    def __init__(self, kind: str = "axis", *, timeout_ms: int = round(TIMEOUT * 1000.0)) -> None:
+    def __init__(self, kind: str = "axis", *, timeout: float = TIMEOUT) -> None:
         self.told: list[tuple[int, str]] = []
         self.kind = kind
         self.control = ObjectControl(
             "x",
             kind,
             largest_override=150.0,
-            timeout=patience_of(timeout_ms),
+            timeout=timeout,
             tell=lambda number, text: self.told.append((number, text)),
         )
         self.now = 0.0
@@ -173,8 +173,9 @@ def test_a_plc_that_falls_silent_loses_the_object_and_what_it_has_commanded_hold
     assert x.block() == [("feed_hold", None, None), ("override", 60.0, "p2")]
 
 
-def test_without_a_timeout_a_plc_keeps_its_object() -> None:
-    x = Object(timeout_ms=0)
+@pytest.mark.parametrize("timeout", [patience_of(0), 0.0])
+def test_without_a_timeout_a_plc_keeps_its_object(timeout: float) -> None:
+    x = Object(timeout=timeout)
     x.take("p1", override=50.0)
     x.control.watch(1e9)
     assert x.control.holder == "p1" and x.told == []

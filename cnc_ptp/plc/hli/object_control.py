@@ -8,7 +8,7 @@ ended, or its messages stop. A motion that it has begun does not outlive it.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from math import isfinite
+from math import inf, isfinite
 from typing import Any, NamedTuple
 
 from cnc_ptp.plc.hli.external_jobs import ExternalJobs
@@ -69,7 +69,7 @@ class ObjectControl:
     """What PLCs command of one axis, spindle or channel."""
 
     def __init__(self, name: str, kind: str, *, largest_override: float, timeout: float, tell: Tell) -> None:
-        """`largest_override` in percent; after `timeout` s without a message of its PLC the object is free."""
+        """`largest_override` in percent; `timeout` in s: without a message for so long the object is free; 0: never."""
         self.name = name
         self.kind = kind
         self.holder: str | None = None
@@ -79,7 +79,7 @@ class ObjectControl:
         self.edges = {unit.name: Answered() for unit in CONTROL_UNITS[kind] if unit.edge}
         self.external = Answered()
         self._largest_override = largest_override
-        self._timeout = timeout
+        self._timeout = timeout or inf
         self._tell = tell
         self._heard = 0.0
         self._last_source = ""
