@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from math import isfinite, isinf
 
 from cnc_ptp.errors import CncError, Value, nearest_name
 from cnc_ptp.machine.wiring import UNKNOWN_UNIT
 from cnc_ptp.protocol.blocks import Event
+from cnc_ptp.protocol.commands import BAD_ARGUMENT
 
 TIMEOUT = 26170
 GONE = 26171
@@ -16,6 +18,14 @@ NOTHING_MOVES = 26174
 UNSEEN = 26175
 NOT_STARTED = 26176
 IT_CONTINUES = "it continues"
+
+
+def check_seconds(where: str, name: str, value: float | None, effect: str, *, finite: bool = False) -> None:
+    """Raises CncError 22001 for a time that is no number, or has no end where it must have one."""
+    if value is None or isfinite(value) or (isinf(value) and not finite):
+        return
+    reason = f"{name} = {value} is not {'finite' if finite else 'a number'}"
+    raise CncError(BAD_ARGUMENT, reason, effect, where=f"{where} refused")
 
 
 class UnknownUnit(CncError, AttributeError, KeyError):

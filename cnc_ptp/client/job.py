@@ -6,7 +6,7 @@ from collections.abc import Generator, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from cnc_ptp.client.faults import ABORTED, UNSEEN, error_of, fault_of
+from cnc_ptp.client.faults import ABORTED, IT_CONTINUES, UNSEEN, check_seconds, error_of, fault_of
 from cnc_ptp.client.goals import GOALS
 from cnc_ptp.client.link import Reply
 from cnc_ptp.client.session import Session, Turns
@@ -78,7 +78,7 @@ class Job:
 
         `timeout` in s: of machine time offline, of this computer's time in the graph. Raises the error of a unit that
         has failed, and CncError 26170 (timeout), 26171 (the machine is gone), 26172 (closed), 26173 (aborted), 26174
-        (offline: nothing moves), 26175 (its end was not seen).
+        (offline: nothing moves), 26175 (its end was not seen), 22001 (a timeout that is no number).
         """
         self._session.run(self._to_the_end(timeout))
         return self
@@ -101,6 +101,7 @@ class Job:
         return f"{self._session.link.kinds[self.unit]} {self.unit}: {self.command}"
 
     def _to_the_end(self, timeout: float | None) -> Turns:
+        check_seconds(f"{self._what}: wait", "timeout", timeout, IT_CONTINUES)
         seen = self._session.link.seen
         yield from self._session.until(self._is_over, timeout, f"{self._what} is not done")
         if self.status is JobStatus.FAILED:

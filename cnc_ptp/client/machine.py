@@ -8,10 +8,10 @@ from os import PathLike, fspath
 from types import TracebackType
 from typing import Any, TypeVar
 
-from cnc_ptp.client.faults import unknown_unit
+from cnc_ptp.client.faults import check_seconds, unknown_unit
 from cnc_ptp.client.link import Link
 from cnc_ptp.client.plc_cycles import PlcCycles
-from cnc_ptp.client.session import Session
+from cnc_ptp.client.session import Session, Turns
 from cnc_ptp.client.stream import Stream
 from cnc_ptp.client.units import UNITS, Axis, Channel, Plc, Spindle, Unit
 from cnc_ptp.protocol.blocks import Event
@@ -74,6 +74,7 @@ class Machine:
         """
         from cnc_ptp.client.graph_link import start_graph
 
+        check_seconds("start", "timeout", timeout, "nothing was started", finite=True)
         files = {name: fspath(path) for name, path in (("record", record), ("scenario", scenario)) if path is not None}
         options = {"machine": fspath(machine), "composed": composed, **files}
         return cls(start_graph(options, domain=domain, namespace=namespace, timeout=timeout))
@@ -86,6 +87,7 @@ class Machine:
         """
         from cnc_ptp.client.graph_link import connect_graph
 
+        check_seconds("connect", "timeout", timeout, "no machine was looked for", finite=True)
         return cls(connect_graph(domain=domain, namespace=namespace, timeout=timeout))
 
     # units
@@ -139,7 +141,7 @@ class Machine:
         return self._session.link.cycle_time
 
     def run_for(self, seconds: float) -> None:
-        """Lets so much time of the machine pass, rounded up to whole blocks."""
+        """Lets so much time of the machine pass, rounded up to whole blocks. Raises CncError 22001 for no number."""
         self._session.run(self._session.until(self._time_is(seconds), None, "run_for", may_stall=True))
 
     async def run_for_async(self, seconds: float) -> None:
@@ -147,6 +149,7 @@ class Machine:
         await self._session.run_async(self._session.until(self._time_is(seconds), None, "run_for", may_stall=True))
 
     def _time_is(self, seconds: float) -> Callable[[], bool]:
+        check_seconds("run_for", "seconds", seconds, "no time has passed", finite=True)
         end = self.cycle + round(seconds / self.cycle_time)
         return lambda: self.cycle >= end
 
@@ -160,12 +163,15 @@ class Machine:
 
     def wait_until(self, condition: Callable[[], bool], timeout: float | None = None) -> None:
         """Waits until the condition is true; it is asked with every block. Raises as `Job.wait`."""
-        self._session.run(self._session.until(condition, timeout, "the condition has not come true", effect=""))
+        self._session.run(self._until(condition, timeout))
 
     async def wait_until_async(self, condition: Callable[[], bool], timeout: float | None = None) -> None:
         """As `wait_until`, in an event loop."""
-        turns = self._session.until(condition, timeout, "the condition has not come true", effect="")
-        await self._session.run_async(turns)
+        await self._session.run_async(self._until(condition, timeout))
+
+    def _until(self, condition: Callable[[], bool], timeout: float | None) -> Turns:
+        check_seconds("wait_until", "timeout", timeout, "no time has passed")
+        return self._session.until(condition, timeout, "the condition has not come true", effect="")
 
     def events(self, duration: float | None = None) -> Stream[Event, Event]:
         """The events of all units from now on: state changes, warnings, errors. As `Axis.states`."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import AsyncIterator, Callable, Iterator
 from typing import Generic, TypeVar
 
+from cnc_ptp.client.faults import check_seconds
 from cnc_ptp.client.observations import Item, Mailbox
 from cnc_ptp.client.session import Session
 
@@ -23,7 +24,11 @@ class Stream(Generic[Item, Shown]):
         duration: float | None,
         what: str,
     ) -> None:
-        """`shown`: what an item of the mailbox stands for. `duration` in s of `m.time`, None = without an end."""
+        """`shown`: what an item of the mailbox stands for. `duration` in s of `m.time`, None = without an end.
+
+        Raises CncError 22001 for a duration that is no number.
+        """
+        check_seconds("stream", "duration", duration, "nothing was read")
         self._session = session
         self._mailbox = mailbox
         self._shown = shown

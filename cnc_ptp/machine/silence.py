@@ -5,6 +5,11 @@ from __future__ import annotations
 from math import inf
 
 
+def patience_of(milliseconds: float) -> float:
+    """Seconds; a parameter of 0 ms switches the watch off: nothing is ever silent."""
+    return milliseconds / 1000.0 if milliseconds else inf
+
+
 class Silence:
     """Watches sources from their first message; one that falls silent is reported once, until its next message.
 

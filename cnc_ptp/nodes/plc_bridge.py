@@ -6,6 +6,7 @@ import sys
 import time
 from collections.abc import Iterable
 from functools import partial
+from math import isfinite
 from typing import Any
 
 import click
@@ -14,7 +15,7 @@ from cnc_ptp import msg
 from cnc_ptp.axis.jog_commands import JOG
 from cnc_ptp.machine.plc_file import read_plc
 from cnc_ptp.machine.run_entries import read_entries
-from cnc_ptp.machine.silence import Silence
+from cnc_ptp.machine.silence import Silence, patience_of
 from cnc_ptp.machine.wiring import build_unit
 from cnc_ptp.nodes import node_command_line, process
 from cnc_ptp.nodes.bridge.coupling_services import CouplingServices
@@ -50,7 +51,7 @@ class PlcBridgeNode(UnitNode):
 
     Publishes besides, while somebody subscribes: /<unit>/hli/status of each axis, spindle and channel once per block,
     /joint_states (sensor_msgs/JointState) of all axes and spindles; /emergency_stop/active (std_msgs/Bool).
-    Subscriptions besides: /<channel|axis|spindle>/override (Override), /<channel>/feed_hold (Switch),
+    Subscriptions besides: /<channel|axis|spindle>/override (Override), /<channel|axis|spindle>/feed_hold (Switch),
     /<axis|spindle>/enable (Switch), /<axis>/feed_release (FeedRelease), /<axis>/external_setpoint (ExternalSetpoint),
     /<axis>/jog (Jog), /plc/life_sign (LifeSign), /<unit>/hli/control (<Kind>HliControl), /emergency_stop (Bool).
     Services besides: /emergency_stop/press, release, reset (std_srvs/Trigger).
@@ -59,7 +60,7 @@ class PlcBridgeNode(UnitNode):
     A jog ends when its messages stop. Of overrides, switches and releases a value counts when it changes; the last one
     holds when messages stop; `valid` = false means 100 %, no feed hold, enabled, released, and has no effect on a topic
     that was never valid. An override of a spindle that came in a rhythm and falls silent is an event. A life sign that
-    was seen once and then is silent for P-MACH life_sign_timeout_ms sets feed hold on all channels.
+    was seen once and then is silent for P-MACH life_sign_timeout_ms sets feed hold on all channels, axes and spindles.
     """
 
     def __init__(
@@ -81,9 +82,8 @@ class PlcBridgeNode(UnitNode):
                 paced=lambda: self.paced,
             )
         self._sequence: dict[str, int] = {}
-        self._life_sign_timeout = machine.life_sign_timeout_ms / 1000.0
+        self._life_sign_timeout = patience_of(machine.life_sign_timeout_ms)
         self._life_sign_counter: int | None = None
-        self._channels = list(machine.channels)
         self._life_signs = Silence(self._life_sign_timeout)
         self._values = ValueTopics(machine, self.plc, self._warn)
         self._hli = Hli(
@@ -109,7 +109,8 @@ class PlcBridgeNode(UnitNode):
         self._emergency_stop = EmergencyStopTopics(self, self.plc)
         self.create_timer(JOG_PATIENCE / 4.0, self._watch_jogs)
         self.create_subscription(msg.LifeSign, LIFE_SIGN, self._on_life_sign, PLC_INPUT)
-        self.create_timer(self._life_sign_timeout / 4.0, self._watch_topics)
+        if isfinite(self._life_sign_timeout):
+            self.create_timer(self._life_sign_timeout / 4.0, self._watch_topics)
         self._answers = CouplingServices(self, self.plc, list(self._machine.axes))
         SetpointServices(self, self.plc, self._machine.axes)
         self._trajectories = TrajectoryServer(self, self.plc, self._machine)
@@ -204,14 +205,18 @@ class PlcBridgeNode(UnitNode):
             self._life_signs.heard(LIFE_SIGN, time.monotonic())
 
     def _watch_life_sign(self) -> None:
-        """The external PLC: its silence sets feed hold, which only its next command ends."""
+        """The external PLC: its silence sets feed hold, which only its next command ends, or a person's.
+
+        What a channel, a master or external setpoints move stops with them.
+        """
         if not self._life_signs.fallen_silent(time.monotonic()):
             return
-        for channel in self._channels:
-            self._hli.objects[channel].hold_feed()
-            self._values.hold_feed(channel)
+        held = [unit for unit in self._hli.objects if not self.plc.is_led(unit)]
+        for unit in held:
+            self._hli.objects[unit].hold_feed()
+            self._values.hold_feed(unit)
         reason = f"no life sign of the external PLC for {self._silence}"
-        self._warn(LIFE_SIGN_LOST, f"plc: {reason}; feed hold is set on all channels")
+        self._warn(LIFE_SIGN_LOST, f"plc: {reason}; feed hold is set on {', '.join(held) or 'nothing'}")
 
     def _warn(self, error_id: int, text: str) -> None:
         self.tell(Severity.WARNING, error_id, text)

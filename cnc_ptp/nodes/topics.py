@@ -190,12 +190,12 @@ def value_topics(*names: str) -> dict[str, Any]:
 PLC_TOPICS: dict[str, dict[str, Any]] = {
     "channel": {**value_topics("override", "feed_hold"), CONTROL: HLI_CONTROL["channel"]},
     "axis": {
-        **value_topics("override", "enable", "feed_release", "coupling_factor"),
+        **value_topics("override", "feed_hold", "enable", "feed_release", "coupling_factor"),
         "external_setpoint": msg.ExternalSetpoint,
         "jog": msg.Jog,
         CONTROL: HLI_CONTROL["axis"],
     },
-    "spindle": {**value_topics("override", "enable"), CONTROL: HLI_CONTROL["spindle"]},
+    "spindle": {**value_topics("override", "feed_hold", "enable"), CONTROL: HLI_CONTROL["spindle"]},
 }
 """Topics `/<unit>/<name>` that the PLC writes, by kind of unit; besides its life sign and the emergency stop."""
 

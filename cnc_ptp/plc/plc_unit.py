@@ -120,6 +120,13 @@ class PlcUnit(Unit):
         block = self.reported.get(axis)
         return isinstance(block, AxisBlock) and bool(block.master)
 
+    def is_led(self, unit: str) -> bool:
+        """A channel, a master or external setpoints move it, as it has reported: what moves it stops it too."""
+        block = self.reported.get(unit)
+        if isinstance(block, AxisBlock | SpindleBlock) and block.state[-1] == AxisStateCode.SYNCHRONIZED_MOTION:
+            return True
+        return self.is_coupled(unit) or has_external_setpoints(block)
+
     def is_lost(self, unit: str) -> bool:
         return unit in self._lost
 

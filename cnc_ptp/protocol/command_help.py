@@ -190,6 +190,7 @@ ARGUMENT_TEXTS: Mapping[str, ArgumentText] = {
     "goal_time": ArgumentText("s", "to come into the goal tolerance", "0"),
     "control_unit": ArgumentText("", "of the unit ([hli_objects.md](hli_objects.md))"),
     "holder": ArgumentText("", "name of the PLC", "none"),
+    "silent": ArgumentText("", "the PLC has fallen silent: its value holds until others command the same", "off"),
     "unit": ArgumentText("", "a channel or a spindle"),
 }
 """By name; those that differ for single commands follow below."""

@@ -69,6 +69,7 @@ OVERLAY: Arguments = {
     "enabled": SWITCH,
     "value": OPTIONAL_NUMBER,
     "holder": OPTIONAL_TEXT,
+    "silent": OPTIONAL_SWITCH,
 }
 """An external PLC serves a control unit of the HLI, or gives it back (protocol/control_units.py)."""
 FEEDFORWARD: Arguments = {"enabled": OPTIONAL_SWITCH, "weight_percent": OPTIONAL_NUMBER}

@@ -32,12 +32,24 @@ class ControlUnit:
     largest: float = 1.0
     """Of a number."""
     edge: bool = False
+    holds_back: float | None = None
+    """The value that keeps something from moving: only a PLC takes it back, also from one that has fallen silent."""
     either: bool = False
     """Acts while the PLC or somebody else wants it: no overlay switches it off."""
 
 
-def level(name: str, command: str, asked_by: str = "", *, initial: float = 0.0, either: bool = False) -> ControlUnit:
-    return ControlUnit(name, SWITCH, command, asked_by, initial, either=either)
+def level(name: str, command: str, asked_by: str = "") -> ControlUnit:
+    return ControlUnit(name, SWITCH, command, asked_by)
+
+
+def hold(name: str, command: str, asked_by: str, *, either: bool = False) -> ControlUnit:
+    """On, it holds back."""
+    return ControlUnit(name, SWITCH, command, asked_by, holds_back=1.0, either=either)
+
+
+def enable(name: str, command: str, asked_by: str = "") -> ControlUnit:
+    """Off, it holds back."""
+    return ControlUnit(name, SWITCH, command, asked_by, initial=1.0, holds_back=0.0)
 
 
 def number(name: str, command: str, asked_by: str, largest: float) -> ControlUnit:
@@ -50,27 +62,27 @@ def edge(name: str) -> ControlUnit:
 
 OVERRIDE = (
     ControlUnit("override", PERCENT, "set_override", "set_override.percent", initial=100.0),
-    level("override_valid", "set_override", initial=1.0),
+    ControlUnit("override_valid", SWITCH, "set_override", initial=1.0),
 )
 ENABLES = (
-    level("controller_enable", "power", "power.enabled", initial=1.0),
-    level("drive_ready", "power", initial=1.0),
+    enable("controller_enable", "power", "power.enabled"),
+    enable("drive_ready", "power"),
 )
-EMERGENCY_STOP = level("emergency_stop", "set_emergency_stop", "set_emergency_stop.enabled", either=True)
+EMERGENCY_STOP = hold("emergency_stop", "set_emergency_stop", "set_emergency_stop.enabled", either=True)
 RESET = edge("reset")
 
 CONTROL_UNITS: Mapping[str, tuple[ControlUnit, ...]] = {
     "axis": (
-        level("feed_hold", "set_feed_release", "feed_hold.enabled"),
+        hold("feed_hold", "set_feed_release", "feed_hold.enabled"),
         *OVERRIDE,
         *ENABLES,
-        level("feed_enable_forward", "set_feed_release", "set_feed_release.forward", initial=1.0),
-        level("feed_enable_backward", "set_feed_release", "set_feed_release.backward", initial=1.0),
+        enable("feed_enable_forward", "set_feed_release", "set_feed_release.forward"),
+        enable("feed_enable_backward", "set_feed_release", "set_feed_release.backward"),
         EMERGENCY_STOP,
         RESET,
     ),
     "spindle": (
-        level("feed_hold", "feed_hold", "feed_hold.enabled"),
+        hold("feed_hold", "feed_hold", "feed_hold.enabled"),
         *OVERRIDE,
         *ENABLES,
         level("stop_at_program_end", "stop_at_program_end", "stop_at_program_end.enabled"),
@@ -79,7 +91,7 @@ CONTROL_UNITS: Mapping[str, tuple[ControlUnit, ...]] = {
         edge("gear_changed"),
     ),
     "channel": (
-        level("feed_hold", "feed_hold", "feed_hold.enabled"),
+        hold("feed_hold", "feed_hold", "feed_hold.enabled"),
         *OVERRIDE,
         number("single_block", "single_block", "single_block.mode", largest=2.0),
         level("optional_stop", "optional_stop", "optional_stop.enabled"),

@@ -16,6 +16,10 @@ HELD_BY_PLC = 26160
 """Warning: what was asked for waits until the PLC gives the control unit back."""
 SERVED_BY_PLC = 26161
 """Refusal: only the PLC carries this out now."""
+TAKEN_FROM_PLC = 26180
+"""Warning: what was asked for acts, instead of what a PLC that has fallen silent had commanded."""
+Kept = tuple[float | None, str, bool]
+"""What a PLC commands of a control unit (None: it does not serve it), its name, whether it has fallen silent."""
 
 
 class Overlay:
@@ -28,6 +32,8 @@ class Overlay:
         self._commands: dict[str, float] = {}
         """What the PLC commands, by the control units that it serves."""
         self._holders: dict[str, str] = {}
+        self._silent: set[str] = set()
+        """Control units that a PLC had served until it fell silent."""
         self._pending: set[str] = set()
         """Edges that others have asked for while the PLC serves them."""
         self._done = {unit.name: 0 for unit in CONTROL_UNITS[kind] if unit.edge}
@@ -60,6 +66,10 @@ class Overlay:
     def holder(self, name: str) -> str | None:
         """The PLC that serves a control unit, None if none does."""
         return self._holders.get(name)
+
+    def is_silent(self, name: str) -> bool:
+        """The PLC that had served a control unit has fallen silent; its value holds."""
+        return name in self._silent
 
     # what others ask for
 
@@ -97,28 +107,53 @@ class Overlay:
         self._pending.add(name)
         self._changed.add(name)
 
+    def taken_back(self, requests: Mapping[str, float]) -> list[str]:
+        """The control units that others take back with their requests from a PLC that has fallen silent.
+
+        Also those that only a PLC gives and that have a part in the same command, but nothing that holds back.
+        """
+        commands = {self._units[name].command for name in requests}
+        return [
+            name
+            for name in self._units
+            if name in self._silent
+            and (name in requests or not self._units[name].asked_by)
+            and self._units[name].command in commands
+            and self._commands[name] != self._units[name].holds_back
+        ]
+
     # what the PLC does
 
-    def serve(self, name: str, command: float, holder: str) -> tuple[float | None, str]:
-        """The PLC serves a control unit from now on, with this command; what was before, for `restore`."""
-        before = self._commands.get(name), self._holders.get(name, "")
+    def serve(self, name: str, command: float, holder: str, *, silent: bool = False) -> Kept:
+        """The PLC serves a control unit from now on, with this command; what was before, for `restore`.
+
+        `silent`: it has fallen silent; the command holds until others ask for another one.
+        """
+        before = self._kept(name)
         self._commands[name], self._holders[name] = command, holder
+        (self._silent.add if silent else self._silent.discard)(name)
         self._changed.add(name)
         return before
 
-    def give_back(self, name: str) -> tuple[float | None, str]:
+    def give_back(self, name: str) -> Kept:
         """What others ask for acts again; edges that they have asked for are forgotten."""
-        before = self._commands.pop(name, None), self._holders.pop(name, "")
+        before = self._kept(name)
+        self._commands.pop(name, None)
+        self._holders.pop(name, None)
+        self._silent.discard(name)
         self._pending.discard(name)
         self._changed.add(name)
         return before
 
-    def restore(self, name: str, before: tuple[float | None, str]) -> None:
-        command, holder = before
+    def _kept(self, name: str) -> Kept:
+        return self._commands.get(name), self._holders.get(name, ""), name in self._silent
+
+    def restore(self, name: str, before: Kept) -> None:
+        command, holder, silent = before
         if command is None:
             self.give_back(name)
         else:
-            self.serve(name, command, holder)
+            self.serve(name, command, holder, silent=silent)
 
     def carried_out(self, name: str) -> None:
         """An edge of the PLC."""

@@ -23,7 +23,7 @@ from cnc_ptp.protocol.blocks import (
 from cnc_ptp.protocol.commands import BAD_ARGUMENT, HELD_OFF, OF_PLC, check_command, current_names, with_floats
 from cnc_ptp.protocol.control_units import PERCENT, ControlUnit
 from cnc_ptp.protocol.jobs import JOBS, Jobs
-from cnc_ptp.protocol.overlay import HELD_BY_PLC, SERVED_BY_PLC, Overlay
+from cnc_ptp.protocol.overlay import HELD_BY_PLC, SERVED_BY_PLC, TAKEN_FROM_PLC, Overlay
 
 
 class Answer(NamedTuple):
@@ -192,8 +192,12 @@ class Unit(ABC):
         return answer.text if isinstance(answer, Answer) else answer
 
     def _ask(self, command: str, requests: Mapping[str, float], cycle: int) -> str | None:
-        """A command of others: it acts where the PLC serves nothing of it, and is remembered elsewhere."""
+        """A command of others: it acts where the PLC serves nothing of it, and is remembered elsewhere.
+
+        What a PLC that has fallen silent had served is taken back from it.
+        """
         overlay = self.overlay
+        taken = [(name, overlay.give_back(name)) for name in overlay.taken_back(requests)]
         before = overlay.ask(requests)
         held = [name for name in requests if overlay.holder(name) is not None and not overlay[name].either]
         message: str | None = None
@@ -202,15 +206,22 @@ class Unit(ABC):
                 message = self.carry_out(overlay[next(iter(requests))].command, cycle)
             except CncError:
                 overlay.ask(before)
+                for name, kept in taken:
+                    overlay.restore(name, kept)
                 raise
-        return "; ".join(filter(None, [message, *(self._waits(command, name) for name in held)])) or None
+        notes = [*(self._takes(command, name, *kept) for name, kept in taken), *(self._waits(command, n) for n in held)]
+        return "; ".join(filter(None, [message, *notes])) or None
+
+    def _takes(self, command: str, name: str, value: float | None, holder: str, silent: bool) -> str:
+        reason = f"the PLC '{holder}', which had commanded {value:g} and is silent"
+        return warning_text(TAKEN_FROM_PLC, f"{self.kind} {self.name}: {command} takes {name} back from {reason}")
 
     def _waits(self, command: str, name: str) -> str:
-        holder = self.overlay.holder(name)
-        text = (
-            f"{self.kind} {self.name}: {command} waits: the PLC '{holder}' serves {name} and commands "
-            f"{self.overlay.value(name):g}; what is asked for acts when it gives {name} back"
-        )
+        served = f"the PLC '{self.overlay.holder(name)}' serves {name} and commands {self.overlay.value(name):g}"
+        until = f"when it gives {name} back"
+        if self.overlay.is_silent(name):
+            until += ", or another PLC serves it: it is silent, and only a PLC takes back what holds back"
+        text = f"{self.kind} {self.name}: {command} waits: {served}; what is asked for acts {until}"
         return warning_text(HELD_BY_PLC, text)
 
     def _refuse_edge(self, command: str, *, by_client: bool) -> None:
@@ -242,6 +253,7 @@ class Unit(ABC):
         enabled: bool,
         value: float | None = None,
         holder: str = "",
+        silent: bool = False,
     ) -> Command:
         """The PLC serves a control unit with a value, or gives it back; an edge with the value 1 is carried out."""
         if control_unit not in self.overlay:
@@ -254,7 +266,10 @@ class Unit(ABC):
         if unit.edge:
             return self._edge(unit, command, cycle, enabled=enabled, rises=bool(enabled and value), holder=holder)
         before = self.overlay.arguments(unit.command)
-        kept = self.overlay.serve(unit.name, value or 0.0, holder) if enabled else self.overlay.give_back(unit.name)
+        if enabled:
+            kept = self.overlay.serve(unit.name, value or 0.0, holder, silent=silent)
+        else:
+            kept = self.overlay.give_back(unit.name)
         if self.overlay.arguments(unit.command) != before:
             try:
                 self._warning = self.carry_out(unit.command, cycle) or ""

@@ -8,7 +8,9 @@ import subprocess
 import sys
 import threading
 import time
+from collections.abc import Callable
 from dataclasses import replace
+from math import inf, nan
 from pathlib import Path
 
 import pytest
@@ -197,6 +199,49 @@ def test_a_wait_has_a_timeout_of_machine_time(m: Machine) -> None:
     assert (number, text) == (26170, "axis x: move_absolute is not done after 0.5 s of machine time; it continues")
     assert m.cycle == 510 and job.status is JobStatus.ACTIVE
     job.wait()
+
+
+@pytest.mark.parametrize(
+    ("call", "text"),
+    [
+        (lambda m: m.run_for(inf), "run_for refused: seconds = inf is not finite; no time has passed"),
+        (lambda m: m.run_for(nan), "run_for refused: seconds = nan is not finite; no time has passed"),
+        (
+            lambda m: m.wait_until(lambda: False, timeout=nan),
+            "wait_until refused: timeout = nan is not a number; no time has passed",
+        ),
+        (
+            lambda m: m.x.move_absolute(100).wait(timeout=nan),
+            "axis x: move_absolute: wait refused: timeout = nan is not a number; it continues",
+        ),
+        (lambda m: m.x.states(nan), "stream refused: duration = nan is not a number; nothing was read"),
+        (lambda m: m.events(nan), "stream refused: duration = nan is not a number; nothing was read"),
+        (
+            lambda m: Machine.start("none.yaml", timeout=inf),
+            "start refused: timeout = inf is not finite; nothing was started",
+        ),
+        (
+            lambda m: Machine.connect(timeout=nan),
+            "connect refused: timeout = nan is not finite; no machine was looked for",
+        ),
+    ],
+)
+def test_times_that_are_none_are_refused(m: Machine, call: Callable[[Machine], object], text: str) -> None:
+    before = m.cycle
+    assert refusal(lambda: call(m))[:2] == (22001, text)
+    assert m.cycle == before
+
+
+def test_waits_without_an_end_may_be_written_as_infinite(m: Machine) -> None:
+    assert m.x.move_absolute(1).wait(timeout=inf).done
+    m.wait_until(lambda: m.x.state.set_position == 1.0, timeout=inf)
+
+
+def test_times_that_are_none_are_refused_in_an_event_loop(m: Machine) -> None:
+    with pytest.raises(CncError, match="timeout = nan is not a number"):
+        asyncio.run(m.wait_until_async(lambda: False, timeout=nan))
+    with pytest.raises(CncError, match="seconds = inf is not finite"):
+        asyncio.run(m.run_for_async(inf))
 
 
 def test_a_job_that_another_one_replaces_is_aborted(m: Machine) -> None:

@@ -488,13 +488,15 @@ def test_lost_life_sign_of_the_plc_holds_the_feed(client):
     client.spin_until(lambda: any(event.error_id == 26103 for event in client.events), "the event")
     event = next(event for event in client.events if event.error_id == 26103)
     assert event.text.startswith("plc: no life sign of the external PLC for ")
-    assert event.text.endswith(" ms; feed hold is set on all channels")
+    assert event.text.endswith(" ms; feed hold is set on channel, s, x, y")
     hold, free = ('{"enabled": true}', True), ('{"enabled": false}', True)
     client.spin_until(lambda: client.commands("channel", "feed_hold")[-1] == hold, "feed hold")
     client.write("/plc/life_sign", msg.LifeSign, counter=7)
     before = len(client.commands("channel", "feed_hold"))
     client.switch("/channel/feed_hold", False)  # the same value as before the loss, and a change all the same
     client.spin_until(lambda: free in client.commands("channel", "feed_hold")[before:], "the PLC takes it away")
+    for unit in ("x", "y", "s"):
+        client.done(unit, "feed_hold", enabled=False)
 
 
 def test_stop_all_ends_the_run_and_the_recording_verifies(client, graph, recording):

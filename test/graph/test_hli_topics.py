@@ -181,11 +181,13 @@ def test_the_life_sign_of_the_plc_holds_what_it_serves(plc):
     plc.say("channel", feed_hold=served(False))
     plc.write("/plc/life_sign", msg.LifeSign, counter=1)
     plc.sees("channel", lambda status: status.feed_hold.state_r, "the feed hold")
-    assert any("feed hold is set on all channels" in text for text in plc.told(26103))
-    plc.say("channel", feed_hold=served(False))
-    plc.sees("channel", lambda status: not status.feed_hold.state_r, "its end")
-    plc.done("channel", "feed_hold", enabled=False)
-    plc.say("channel", valid=False)
+    assert any("feed hold is set on channel, s, x, y" in text for text in plc.told(26103))
+    plc.sees("x", lambda status: status.feed_hold.state_r and not status.feed_hold.enable_r, "that of an axis")
+    for unit in ("channel", "x", "y", "s"):
+        plc.say(unit, feed_hold=served(False))
+        plc.sees(unit, lambda status: not status.feed_hold.state_r, "its end")
+        plc.say(unit, valid=False)
+        plc.sees(unit, lambda status: not (status.feed_hold.enable_r or status.feed_hold.state_r), "no hold behind it")
 
 
 def test_the_plc_of_ten_lines_of_the_document(plc):

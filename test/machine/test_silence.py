@@ -1,6 +1,6 @@
 """Silent sources: each is reported once, in seconds or in cycles."""
 
-from cnc_ptp.machine.silence import Silence
+from cnc_ptp.machine.silence import Silence, patience_of
 
 
 def test_a_source_is_told_once_until_it_is_heard_again():
@@ -11,6 +11,13 @@ def test_a_source_is_told_once_until_it_is_heard_again():
     assert [silence.fallen_silent(now) for now in (0.25, 0.3)] == [["x"], []]
     silence.heard("x", 0.4)
     assert silence.fallen_silent(0.7) == ["x"]
+
+
+def test_a_parameter_of_0_ms_switches_the_watch_off():
+    silence = Silence(patience_of(0))
+    silence.heard("x", 0.0)
+    assert silence.fallen_silent(1e9) == [] and silence.is_heard("x", 1e9)
+    assert patience_of(250) == 0.25
 
 
 def test_what_was_never_heard_or_is_forgotten_is_not_silent():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any
 
@@ -16,6 +17,7 @@ from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.plc.hli.hli import Hli
 from cnc_ptp.plc.hli.status import status
 from cnc_ptp.plc.plc_unit import PlcUnit
+from cnc_ptp.protocol.axis_states import AxisStateCode as A
 from cnc_ptp.protocol.blocks import Command
 from cnc_ptp.protocol.channel_states import ChannelStateCode as C
 
@@ -191,8 +193,118 @@ def test_objects_whose_plc_is_silent_become_free() -> None:
     bench.hli.watch(9.0)
     bench.run(0.02)
     assert not bench.shown("x")["held"] and bench.shown("x")["override"]["enable_r"]
-    text = "no message of 'p1' for 500 ms; what it has commanded holds, and another PLC may take it"
+    text = "no message of 'p1' for 500 ms; its values hold until others command them, and another PLC may take it"
     assert bench.texts() == [f"26165 plc: HLI of x: {text}"]
+
+
+def test_an_endless_motion_ends_on_its_ramp_when_its_plc_falls_silent() -> None:
+    """Closed form of a ramp that does not reach its deceleration: v·sqrt(v / j)."""
+    bench = Machine(end_when_idle=False).run(0.1)
+    bench.say("x", external={**AXIS, "type": 6, "velocity": 40.0})
+    bench.run(1.5)
+    bench.hli.watch(bench.now + 0.51)
+    bench.run(0.02)
+    (halt,) = [record for record in bench.records if record.command == "halt"]
+    begin = bench.blocks["x"][halt.cycle // 10 - 1].set_position[-1]  # type: ignore[union-attr]
+    bench.run(2.0)
+    p = MILL.axes["x"]
+    assert p.deceleration**2 / p.jerk > 40.0
+    assert bench.position("x") - begin == pytest.approx(40.0 * (0.001 + math.sqrt(40.0 / p.jerk)), abs=1e-6)
+    assert bench.last("x").set_velocity[-1] == 0.0
+
+
+def test_an_endless_motion_has_the_ramps_of_its_external_command() -> None:
+    """Acceleration as given; the same command again changes the velocity in motion, and 0 ends it."""
+    bench = Machine(end_when_idle=False).run(0.1)
+    for velocity, at_end in ((40.0, 40.0), (-20.0, -20.0), (0.0, 0.0)):
+        bench.say("x", external={**AXIS, "type": 6, "velocity": velocity, "acceleration": 80.0, "deceleration": 60.0})
+        bench.run(3.0)
+        assert bench.last("x").set_velocity[-1] == at_end
+        bench.say("x", external={**AXIS, "semaphore": 0})
+        bench.run(0.02)
+    accelerations = [a for block in bench.blocks["x"] for a in block.set_acceleration]  # type: ignore[union-attr]
+    assert max(accelerations) == pytest.approx(80.0) and -80.0 <= min(accelerations) <= -60.0
+    assert bench.texts() == []
+
+
+def test_a_spindle_stops_when_its_plc_falls_silent() -> None:
+    bench = Machine(end_when_idle=False).run(0.1)
+    bench.say("s", external=SPINDLE)
+    bench.run(2.0)
+    bench.hli.watch(bench.now + 0.51)
+    bench.run(3.0)
+    assert bench.last("s").set_speed_rpm[-1] == 0.0
+    text = "no message of 'p1' for 500 ms; its motion is stopped; its values hold until others command them"
+    assert bench.texts() == [f"26165 plc: HLI of s: {text}, and another PLC may take it"]
+
+
+def test_the_motion_of_a_service_goes_on_when_a_plc_falls_silent() -> None:
+    bench = Machine(end_when_idle=False).run(0.1)
+    bench.say("x", override=50.0)
+    bench.give("x", "move_absolute", target=100.0)
+    bench.run(0.1)
+    bench.hli.watch(bench.now + 0.51)
+    bench.run(10.0)
+    assert bench.position("x") == 100.0
+
+
+def test_a_second_plc_stops_the_motion_of_the_first_and_may_move_afterwards() -> None:
+    bench = Machine(end_when_idle=False).run(0.1)
+    bench.say("x", "p1", external={**AXIS, "position": 100.0, "velocity": 20.0})
+    bench.run(0.1)
+    bench.say("x", "p1", external={**AXIS, "semaphore": 0})
+    bench.run(0.5)
+    assert bench.shown("x")["holder"] == "p1"
+    bench.say("x", "p2", external={**AXIS, "position": 0.0})
+    bench.run(0.1)
+    assert bench.last("x").set_velocity[-1] == 20.0
+    bench.say("x", "p2", external={**AXIS, "semaphore": 0})
+    bench.say("x", "p2", external={**AXIS, "type": 1})
+    bench.run(1.0)
+    assert bench.last("x").set_velocity[-1] == 0.0 and bench.position("x") < 100.0
+    assert bench.shown("x")["holder"] == ""
+    refused = "'p2' commands it too and is refused while 'p1' holds it; nothing was changed"
+    stopped = "'p2' stops it while 'p1' holds it; the stop is carried out, nothing else was changed"
+    assert bench.texts() == [f"26162 plc: HLI of x: {text}" for text in (refused, stopped)]
+    bench.say("x", "p2", external={**AXIS, "semaphore": 0})
+    bench.say("x", "p2", external=AXIS)
+    bench.run(5.0)
+    assert bench.position("x") == 12.5
+
+
+def test_who_is_led_by_another() -> None:
+    bench = Machine("%P\nG01 X20 Y20 F3000\nM30", end_when_idle=False).run(0.3)
+    assert [unit for unit in ("channel", "x", "y", "s") if bench.plc.is_led(unit)] == ["x", "y"]
+    bench.run(2.0)
+    assert not bench.plc.is_led("x")
+    assert bench.give("x", "external_enable", mode="absolute").accepted
+    bench.run(0.02)
+    assert bench.plc.is_led("x")
+
+
+def test_a_plc_that_is_silent_locks_nobody_out() -> None:
+    """Edges are free; a value is taken back by a command of others; its next message counts again."""
+    bench = Machine(end_when_idle=False).run(0.1)
+    bench.say("channel", reset=0.0, start=0.0)
+    bench.say("x", reset=0.0, override=30.0, controller_enable=1.0)
+    bench.run(0.02)
+    bench.hli.watch(bench.now + 0.51)
+    bench.run(0.02)
+    assert bench.shown("x")["override"]["state_r"] == 30.0
+    for unit in ("channel", "x"):
+        assert bench.give(unit, "reset").error_id != 26161
+    given = bench.give("x", "set_override", percent=80.0)
+    taken = "takes override back from the PLC 'p1', which had commanded 30 and is silent"
+    assert (given.accepted, given.message) == (True, f"P-WARN-26180 axis x: set_override {taken}")
+    bench.run(0.02)
+    assert bench.last("x").override_percent[-1] == 80.0
+    assert bench.shown("x")["override"]["enable_r"] is False
+    assert "takes controller_enable back from the PLC 'p1'" in bench.give("x", "power", enabled=False).message
+    bench.run(0.02)
+    assert bench.last("x").state[-1] == A.DISABLED
+    bench.say("x", override=30.0, controller_enable=1.0)
+    bench.run(0.02)
+    assert (bench.last("x").override_percent[-1], bench.last("x").state[-1]) == (30.0, A.STANDSTILL)
 
 
 def test_what_is_no_number_is_0_in_the_integers_of_the_hli() -> None:

@@ -8,6 +8,7 @@ import pytest
 from hli_support import HliBench
 from machine_support import MachineBench, axis_parameters, position_after, seven_phases
 
+from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.channel_states import ChannelStateCode as C
 from cnc_ptp.protocol.control_units import CONTROL_UNITS
@@ -67,6 +68,57 @@ def test_the_plc_takes_a_value_over_and_gives_it_back(
     assert bench.state(unit) == (True, asked, plc)
     assert bench.give_back(unit).accepted
     assert bench.state(unit) == (False, asked, asked)
+
+
+@pytest.mark.parametrize(("kind", "unit", "start", "command", "arguments", "asked", "plc"), LEVELS)
+def test_a_value_of_a_silent_plc_is_taken_back_by_others_but_not_what_holds_back(
+    kind: str, unit: str, start: float, command: str, arguments: dict[str, Any], asked: float, plc: float
+) -> None:
+    """In both directions: the value of the PLC above, and the one that others ask for, which the PLC had commanded."""
+    holds_back = {"feed_hold": 1.0}.get(unit, 0.0 if "enable" in unit else None)
+    for value in (plc, asked):
+        bench = HliBench(kind)
+        bench.serve(unit, value)
+        bench.serve(unit, value, silent=True)
+        assert bench.state(unit) == (True, start, value)
+        message = bench.ask(command, **arguments).message
+        if value == holds_back:
+            text = (
+                f"P-WARN-26160 {kind} {bench.name}: {command} waits: the PLC 'p1' serves {unit} and commands {value:g}; "
+                f"what is asked for acts when it gives {unit} back, or another PLC serves it: it is silent, and only a "
+                "PLC takes back what holds back"
+            )
+            assert (message, bench.state(unit)) == (text, (True, asked, value))
+        else:
+            taken = f"takes {unit} back from the PLC 'p1', which had commanded {value:g} and is silent"
+            assert f"P-WARN-26180 {kind} {bench.name}: {command} {taken}" in message
+            assert bench.state(unit) == (False, asked, asked)
+
+
+def test_others_take_back_what_only_a_plc_gives_of_the_same_command() -> None:
+    """Without `override_valid` the override would not act; a drive that is not ready keeps the power off."""
+    bench = HliBench("axis")
+    bench.serve("override_valid", 0.0, silent=True)
+    bench.serve("drive_ready", 0.0, silent=True)
+    assert "takes override_valid back" in bench.ask("set_override", percent=30.0).message
+    assert bench.bench.last.override_percent[-1] == 30.0
+    bench.ask("power", enabled=True)
+    assert bench.bench.state == S.DISABLED
+    bench.serve("drive_ready", 1.0, holder="p2")
+    assert bench.bench.state == S.STANDSTILL and bench.known["drive_ready"].holder == "p2"
+
+
+def test_a_refused_command_takes_nothing_back_from_a_silent_plc() -> None:
+    bench = HliBench("spindle")
+    bench.serve("override", 50.0, silent=True)
+    assert not bench.ask("set_override", percent=1e6).accepted
+    bench.bench.unit.carry_out = refuse  # type: ignore[method-assign]
+    assert not bench.ask("set_override", percent=30.0).accepted
+    assert bench.state("override") == (True, 100.0, 50.0) and bench.bench.unit.overlay.is_silent("override")
+
+
+def refuse(command: str, cycle: int) -> str | None:
+    raise CncError(24006, "no", "nothing was changed")
 
 
 @pytest.mark.parametrize(("kind", "unit", "start", "command", "arguments", "asked", "plc"), LEVELS)

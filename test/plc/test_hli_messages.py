@@ -9,25 +9,28 @@ from typing import Any
 import pytest
 from hli_support import AXIS, SPINDLE, message
 
+from cnc_ptp.machine.silence import patience_of
 from cnc_ptp.plc.hli.messages import control_message, external_command
 from cnc_ptp.plc.hli.object_control import ObjectControl
-from cnc_ptp.protocol.blocks import AxisBlock, Command, CommandAnswer
+from cnc_ptp.protocol.blocks import AxisBlock, Command, CommandAnswer, JobEvent
 from cnc_ptp.protocol.control_units import CONTROL_UNITS
+from cnc_ptp.protocol.jobs import JobStatus
 
 TIMEOUT = 0.5
+ABORTING = {"buffer_mode": "aborting"}
 
 
 class Object:
     """One object with its warnings; `block` gives the commands that go out."""
 
-    def __init__(self, kind: str = "axis") -> None:
+    def __init__(self, kind: str = "axis", *, timeout: float = TIMEOUT) -> None:
         self.told: list[tuple[int, str]] = []
         self.kind = kind
         self.control = ObjectControl(
             "x",
             kind,
             largest_override=150.0,
-            timeout=TIMEOUT,
+            timeout=timeout,
             tell=lambda number, text: self.told.append((number, text)),
         )
         self.now = 0.0
@@ -48,6 +51,11 @@ class Object:
     def answer(self, number: int, error_id: int = 0, job: int = 0) -> None:
         self.control.read(AxisBlock(0, 10, answers=[CommandAnswer(number, error_id, job)]))
 
+    def report(self, active: int = 0, ended: int = 0) -> None:
+        """A block in which a job has ended, or is active."""
+        events = [JobEvent(ended, JobStatus.DONE, 5)] if ended else []
+        self.control.read(AxisBlock(0, 10, job=active, job_events=events))
+
 
 def short(command: Command) -> tuple[Any, ...]:
     given = command.arguments
@@ -55,7 +63,8 @@ def short(command: Command) -> tuple[Any, ...]:
         return command.command, given
     if not given["enabled"]:
         return given["control_unit"], None, None
-    return given["control_unit"], given["value"], given["holder"]
+    silent = ("silent",) if given.get("silent") else ()
+    return given["control_unit"], given["value"], given["holder"], *silent
 
 
 # ---------------------------------------------------------------- what goes out
@@ -154,13 +163,22 @@ def test_a_plc_that_falls_silent_loses_the_object_and_what_it_has_commanded_hold
     x.control.watch(x.now + TIMEOUT)
     assert x.control.holder == "p1"
     x.control.watch(x.now + TIMEOUT + 0.001)
-    text = "no message of 'p1' for 500 ms; what it has commanded holds, and another PLC may take it"
+    text = "no message of 'p1' for 500 ms; its values hold until others command them, and another PLC may take it"
     assert x.told == [(26165, f"plc: HLI of x: {text}")]
-    assert x.control.holder is None and x.block() == []
+    left = [("feed_hold", 1.0, "p1", "silent"), ("override", 50.0, "p1", "silent")]
+    assert x.control.holder is None and x.block() == left
     x.take("p2")  # a PLC that serves nothing takes nothing, and frees nothing
     assert x.control.holder is None and x.block() == []
     x.take("p2", override=60.0)
     assert x.block() == [("feed_hold", None, None), ("override", 60.0, "p2")]
+
+
+@pytest.mark.parametrize("timeout", [patience_of(0), 0.0])
+def test_without_a_timeout_a_plc_keeps_its_object(timeout: float) -> None:
+    x = Object(timeout=timeout)
+    x.take("p1", override=50.0)
+    x.control.watch(1e9)
+    assert x.control.holder == "p1" and x.told == []
 
 
 def test_a_plc_that_comes_back_takes_its_object_again() -> None:
@@ -168,11 +186,36 @@ def test_a_plc_that_comes_back_takes_its_object_again() -> None:
     x.take("p1", override=50.0)
     x.block()
     x.control.watch(9.0)
+    assert x.block() == [("override", 50.0, "p1", "silent")]
+    assert not x.control.heard("p1", 1, 9.0)  # others may have commanded the value: the same message counts again
     x.take("p1", override=50.0)
-    assert x.control.holder == "p1" and x.block() == []
+    assert x.control.holder == "p1" and x.block() == [("override", 50.0, "p1")]
     x.control.watch(99.0)
+    x.block()
     x.take("p1")
     assert x.control.holder is None and x.block() == [("override", None, None)]
+
+
+def test_edges_of_a_plc_that_falls_silent_are_everybodys_again() -> None:
+    x = Object()
+    x.take(reset=1.0, override=50.0)
+    x.control.watch(9.0)  # an edge that has not gone out is not carried out without its PLC
+    assert x.block() == [("override", 50.0, "p1", "silent")]
+    x.take(reset=1.0, override=50.0)
+    x.block()
+    x.control.watch(99.0)
+    assert x.block() == [("override", 50.0, "p1", "silent"), ("reset", None, None)]
+    x.take(reset=1.0)  # still on: no new edge
+    assert x.block() == [("override", None, None), ("reset", 0.0, "p1")]
+
+
+def test_gear_changes_of_a_spindle_whose_plc_is_silent_wait_for_somebody() -> None:
+    """The machine does not say that a gear is in when it does not know: only a service, or the next PLC."""
+    s = Object("spindle")
+    s.take(gear_changed=0.0)
+    s.block()
+    s.control.watch(9.0)
+    assert s.block() == [("gear_changed", None, None)] and s.control.serves_functions
 
 
 def test_what_another_plc_had_on_is_no_edge_of_the_next() -> None:
@@ -192,7 +235,7 @@ def test_an_empty_message_releases_nothing() -> None:
     x.take("", valid=False)
     x.control.watch(9.0)
     x.take("", valid=False)
-    assert x.block() == []
+    assert x.block() == [("override", 50.0, "p1", "silent")]
 
 
 # ---------------------------------------------------------------- what does not count
@@ -246,14 +289,23 @@ def test_warnings_of_an_endless_row_of_clients_stay_few() -> None:
 
 def test_the_life_sign_holds_the_feed_of_a_plc_that_serves_it_until_its_next_message() -> None:
     x = Object("channel")
-    assert not x.control.hold_feed()
-    x.take(feed_hold=0.0, sequence=1)
-    assert x.block() == [("feed_hold", 0.0, "p1")]
-    assert x.control.hold_feed()
-    assert x.block() == [("feed_hold", 1.0, "p1")]
+    x.take(feed_hold=0.0, override=50.0, sequence=1)
+    assert x.block() == [("feed_hold", 0.0, "p1"), ("override", 50.0, "p1")]
+    x.control.hold_feed()  # what others ask for, the feed hold, acts
+    assert x.block() == [("feed_hold", None, None)]
     assert not x.control.heard("p1", 2, x.now)  # the same message counts again
-    x.take(feed_hold=0.0, sequence=3)
-    assert x.block() == [("feed_hold", 0.0, "p1")]
+    x.take(feed_hold=0.0, override=50.0, sequence=3)
+    assert x.block() == [("feed_hold", 0.0, "p1"), ("feed_hold", {"enabled": False})]
+    assert x.control.heard("p1", 4, x.now)
+
+
+def test_the_life_sign_of_a_plc_that_serves_no_feed_hold_changes_nothing_of_what_it_serves() -> None:
+    x = Object()
+    x.take(override=50.0)
+    x.block()
+    x.control.hold_feed()
+    x.take(override=50.0)
+    assert x.block() == []
 
 
 def test_the_same_message_again_is_only_heard() -> None:
@@ -275,9 +327,21 @@ def test_the_same_message_again_is_only_heard() -> None:
         ({"velocity": 5.0}, "move_absolute", {"target": 12.5, "velocity": 5.0}),
         ({"type": 4, "jerk": 9.0}, "move_relative", {"distance": 12.5, "jerk": 9.0}),
         ({"type": 5}, "move_modulo", {"position": 12.5}),
-        ({"type": 6, "velocity": -5.0}, "jog", {"velocity": -5.0}),
+        (
+            {"type": 5, "velocity": 4.0, "acceleration": 3.0, "deceleration": 2.0, "jerk": 1.0},
+            "move_modulo",
+            {"position": 12.5, "velocity": 4.0, "acceleration": 3.0, "deceleration": 2.0, "jerk": 1.0},
+        ),
+        ({"type": 6, "velocity": -5.0}, "move_velocity", {"velocity": -5.0, **ABORTING}),
+        (
+            {"type": 6, "velocity": -5.0, "acceleration": 3.0, "deceleration": 2.0, "jerk": 1.0},
+            "move_velocity",
+            {"velocity": -5.0, "acceleration": 3.0, "deceleration": 2.0, "jerk": 1.0, **ABORTING},
+        ),
+        ({"type": 6, "acceleration": 3.0}, "halt", {}),
         ({"type": 7}, "new_target", {"target": 12.5}),
-        ({"type": 8}, "home", {}),
+        ({"type": 8}, "home", {"position": 12.5}),
+        ({"type": 8, "position": 0.0}, "home", {}),
     ],
 )
 def test_external_commands_of_an_axis(changes: Mapping[str, float], command: str, arguments: Any) -> None:
@@ -342,6 +406,102 @@ def test_an_external_command_that_is_none(changes: Mapping[str, float], reason: 
     assert x.block() == [] and not x.control.command_semaphore
     assert x.told == [(26164, f"plc: HLI of x: external command: {reason}; nothing was changed")]
     assert (x.control.external.count, x.control.external.error_id) == (1, 26164)
+
+
+# ---------------------------------------------------------------- motions of external commands
+
+
+def moving(semaphore: int = 1) -> Object:
+    """An axis whose job 4 the PLC p1 has begun."""
+    x = Object()
+    x.take(external=AXIS)
+    x.block()
+    x.answer(1, job=4)
+    x.report(active=4)
+    x.take(external={**AXIS, "semaphore": semaphore})
+    return x
+
+
+@pytest.mark.parametrize("semaphore", [0, 1])
+def test_a_motion_is_halted_when_its_plc_falls_silent(semaphore: int) -> None:
+    x = moving(semaphore)
+    x.control.watch(x.now + TIMEOUT)
+    assert x.block() == [] and x.control.holder == "p1"
+    x.control.watch(x.now + TIMEOUT + 0.001)
+    text = "no message of 'p1' for 500 ms; its motion is halted"
+    assert x.told == [
+        (26165, f"plc: HLI of x: {text}; its values hold until others command them, and another PLC may take it")
+    ]
+    assert x.control.holder is None
+    x.report(active=4)
+    x.report(active=4)
+    assert x.block() == [("halt", {})]  # once
+    x.report(active=5)
+    assert x.block() == []
+
+
+def test_a_motion_is_halted_when_its_plc_leaves() -> None:
+    x = moving()
+    x.take(valid=False)
+    x.report(active=4)
+    assert x.block() == [("halt", {})] and x.told == []
+
+
+def test_a_motion_that_waits_for_its_turn_is_halted_when_it_begins() -> None:
+    """A spindle takes commands in order of arrival; the answer may come after the silence too."""
+    s = Object("spindle")
+    s.take(external=SPINDLE)
+    s.block()
+    s.control.watch(9.0)
+    assert "; its motion is stopped; " in s.told[0][1]
+    s.answer(1, job=7)
+    s.report(active=6)
+    assert s.block() == []
+    s.report(active=7)
+    assert s.block() == [("stop", {})]
+
+
+def test_a_motion_of_another_is_not_halted() -> None:
+    x = moving()
+    x.report(ended=4, active=5)
+    x.control.watch(9.0)
+    x.report(active=5)
+    assert x.block() == [] and "halted" not in x.told[0][1]
+
+
+def test_an_external_command_that_has_not_gone_out_does_not_begin_without_its_plc() -> None:
+    x = Object()
+    x.take(external=AXIS)
+    x.control.watch(9.0)
+    assert x.block() == [] and not x.control.command_semaphore
+    x.take(external=AXIS)  # the same again is no new command
+    assert x.block() == []
+
+
+def test_a_plc_holds_the_object_until_its_motion_has_ended() -> None:
+    x = moving(semaphore=0)
+    assert x.control.holder == "p1" and not x.take("p2", external=AXIS)
+    x.take("p2", external={**AXIS, "semaphore": 0})
+    x.report(ended=4)
+    assert x.control.holder is None
+    assert [number for number, _ in x.told] == [26162]
+    assert x.take("p2", external=AXIS) and x.block() == [("move_absolute", {"target": 12.5})]
+
+
+def test_anybody_may_stop_what_another_plc_holds() -> None:
+    x = moving(semaphore=0)
+    for _ in range(3):
+        assert not x.take("p2", override=5.0, external={**AXIS, "type": 1})
+        assert x.control.holder == "p1"
+    assert x.block() == [("stop", {})]
+    text = "'p2' stops it while 'p1' holds it; the stop is carried out, nothing else was changed"
+    assert x.told == [(26162, f"plc: HLI of x: {text}")]
+    x.take("p2", external={**AXIS, "semaphore": 0})
+    x.take("p2", external={**AXIS, "type": 1})
+    assert x.block() == [("stop", {})] and len(x.told) == 1
+    for number in range(40):
+        x.take(f"q{number}", external={**AXIS, "type": 1})
+    assert len(x.control._stopping) <= 16
 
 
 # ---------------------------------------------------------------- acknowledgements, units

@@ -47,8 +47,11 @@ class HliBench:
         self.run()
         return record
 
-    def serve(self, control_unit: str, value: float = 0.0, holder: str = "p1") -> CommandRecord:
-        return self.ask("overlay", control_unit=control_unit, enabled=True, value=value, holder=holder)
+    def serve(
+        self, control_unit: str, value: float = 0.0, holder: str = "p1", *, silent: bool = False
+    ) -> CommandRecord:
+        arguments = {"silent": True} if silent else {}
+        return self.ask("overlay", control_unit=control_unit, enabled=True, value=value, holder=holder, **arguments)
 
     def give_back(self, control_unit: str) -> CommandRecord:
         return self.ask("overlay", control_unit=control_unit, enabled=False)

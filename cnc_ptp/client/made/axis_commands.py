@@ -523,6 +523,7 @@ class AxisCommands(Asking):
         *,
         value: float | None = None,
         holder: str | None = None,
+        silent: bool | None = None,
     ) -> Answer:
         """An external PLC serves a control unit, or gives it back ([plc_hli.md](plc_hli.md)).
 
@@ -530,5 +531,13 @@ class AxisCommands(Asking):
         enabled  on or off
         value  switches 0 and 1, overrides in %; 1 has an edge carried out; left out: with `enabled` off only
         holder  name of the PLC; left out: none
+        silent  the PLC has fallen silent: its value holds until others command the same; left out: off
         """
-        return self._answer("overlay", control_unit=control_unit, enabled=enabled, value=value, holder=holder)
+        return self._answer(
+            "overlay",
+            control_unit=control_unit,
+            enabled=enabled,
+            value=value,
+            holder=holder,
+            silent=silent,
+        )

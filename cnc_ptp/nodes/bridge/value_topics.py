@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from typing import Any
 
-from cnc_ptp.machine.silence import Silence
+from cnc_ptp.machine.silence import Silence, patience_of
 from cnc_ptp.nodes.topics import VALUE_TOPICS
 from cnc_ptp.parameters import AxisParameters, ChannelParameters, MachineParameters, SpindleParameters
 from cnc_ptp.plc.hli.object_control import OUT_OF_SEQUENCE
@@ -40,7 +40,7 @@ class ValueTopics:
         self._plc = plc
         self._warn = warn
         self._timeout_text = f"{machine.life_sign_timeout_ms} ms"
-        timeout = machine.life_sign_timeout_ms / 1000.0
+        timeout = patience_of(machine.life_sign_timeout_ms)
         self._overrides, self._factors = Silence(timeout, rhythm=True), Silence(timeout)
         self._sequence: dict[str, int] = {}
         self._disordered: set[str] = set()
@@ -116,14 +116,13 @@ class ValueTopics:
         self._factors.heard(topic, time.monotonic())
         return Command(unit, "set_cyclic_factor", {"factor": message["factor"]})
 
-    def hold_feed(self, channel: str) -> None:
-        """A feed hold that only the next command of the PLC ends: its `off` counts as a change."""
-        topic = f"/{channel}/feed_hold"
+    def hold_feed(self, unit: str) -> None:
+        """A feed hold that only the next command of the PLC ends: whatever that is, it counts as a change."""
+        topic = f"/{unit}/feed_hold"
         self._served.add(topic)
-        hold = Command(channel, "feed_hold", {"enabled": True})
         self._newest.pop(topic, None)
-        self._last[topic] = hold.arguments_json
-        self._plc.input(hold)
+        self._last.pop(topic, None)
+        self._plc.input(Command(unit, "feed_hold", {"enabled": True}))
 
     def watch(self) -> None:
         """What has fallen silent: the last value holds, with a warning."""

@@ -19,17 +19,24 @@ PER_LENGTH = 1e4
 PER_SPEED = 1e3
 """µm/s per mm/s, 0.001 °/s per °/s."""
 
-AXIS_COMMANDS: Mapping[int, tuple[str, tuple[str, ...]]] = {
-    1: ("stop", ()),
-    2: ("halt", ()),
-    3: ("move_absolute", ("target", "dynamics")),
-    4: ("move_relative", ("distance", "dynamics")),
-    5: ("move_modulo", ("position", "dynamics")),
-    6: ("jog", ("velocity",)),
-    7: ("new_target", ("target",)),
-    8: ("home", ()),
+RAMPS = ("acceleration", "deceleration", "jerk")
+AXIS_COMMANDS: Mapping[int, tuple[str, Mapping[str, str]]] = {
+    1: ("stop", {}),
+    2: ("halt", {}),
+    3: ("move_absolute", {"target": "position"}),
+    4: ("move_relative", {"distance": "position"}),
+    5: ("move_modulo", {"position": "position"}),
+    6: ("move_velocity", {"velocity": "velocity"}),
+    7: ("new_target", {"target": "position"}),
+    8: ("home", {}),
 }
-"""`type` of HliAxisCommand -> command and its arguments."""
+"""`type` of HliAxisCommand -> command, its arguments and the fields that they come from."""
+OPTIONAL_FIELDS: Mapping[str, tuple[str, ...]] = {
+    **dict.fromkeys(("move_absolute", "move_relative", "move_modulo"), ("velocity", *RAMPS)),
+    "move_velocity": RAMPS,
+    "home": ("position",),
+}
+"""Command -> arguments with fields of the same names, where 0 means that the axis parameter counts."""
 SPINDLE_COMMANDS: Mapping[int, str] = {
     1: "stop",
     2: "start",
@@ -40,6 +47,8 @@ SPINDLE_COMMANDS: Mapping[int, str] = {
     7: "select_gear",
 }
 """`type` of HliSpindleCommand -> command."""
+STOP = 1
+"""`type` of axes and spindles."""
 DIRECTIONS = {1: "cw", -1: "ccw", 2: "shortest"}
 
 
@@ -103,6 +112,11 @@ def in_si(external: dict[str, float]) -> None:
         external["speed"] /= PER_SPEED * DEG_S_PER_RPM
 
 
+def is_stop(message: ControlMessage) -> bool:
+    """Its external command is STOP."""
+    return message.semaphore and message.external["type"] == STOP
+
+
 def external_command(kind: str, name: str, external: Mapping[str, float]) -> Command | str:
     """The command that an external command stands for, or why it is none."""
     for field, value in external.items():
@@ -116,15 +130,17 @@ def external_command(kind: str, name: str, external: Mapping[str, float]) -> Com
 
 
 def axis_command(name: str, external: Mapping[str, float]) -> Command:
-    """Dynamics of 0 are left out: those of the axis count."""
+    """Optional fields of 0 are left out: those of the axis count.
+
+    An endless motion takes over what is active, so that its velocity may change; a velocity of 0 ends it.
+    """
     command, fields = AXIS_COMMANDS[int(external["type"])]
-    arguments: dict[str, Any] = {}
-    for field in fields:
-        if field == "dynamics":
-            dynamics = ("velocity", "acceleration", "deceleration", "jerk")
-            arguments |= {each: external[each] for each in dynamics if external[each]}
-        else:
-            arguments[field] = external["velocity" if field == "velocity" else "position"]
+    arguments: dict[str, Any] = {argument: external[field] for argument, field in fields.items()}
+    if command == "move_velocity":
+        if not external["velocity"]:
+            return Command(name, "halt", {})
+        arguments["buffer_mode"] = "aborting"
+    arguments |= {field: external[field] for field in OPTIONAL_FIELDS.get(command, ()) if external[field]}
     return Command(name, command, arguments)
 
 

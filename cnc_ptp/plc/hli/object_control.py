@@ -1,15 +1,18 @@
 """One object of the HLI: who holds it, what that PLC commands, what has become of it.
 
 Messages come at any rate, commands go out once a block: of levels the newest value, of edges each. A PLC that serves
-anything holds the object until it gives everything back, or its messages stop.
+anything, or has begun a motion that has not ended, holds the object until it gives everything back and the motion has
+ended, or its messages stop. A motion that it has begun does not outlive it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from math import isfinite
+from math import inf, isfinite
+from typing import Any, NamedTuple
 
-from cnc_ptp.plc.hli.messages import ControlMessage, external_command
+from cnc_ptp.plc.hli.external_jobs import ExternalJobs
+from cnc_ptp.plc.hli.messages import ControlMessage, external_command, is_stop
 from cnc_ptp.plc.sequence import is_newer
 from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, Command, CommandAnswer, ControlUnitState, SpindleBlock
 from cnc_ptp.protocol.control_units import CONTROL_UNITS, PERCENT, ControlUnit
@@ -25,6 +28,15 @@ MOST_SOURCES = 16
 
 Tell = Callable[[int, str], None]
 """Takes a warning: number, text."""
+
+
+class Served(NamedTuple):
+    """What a PLC commands of a control unit."""
+
+    value: float
+    source: str
+    silent: bool = False
+    """The PLC has fallen silent: the value holds until others ask for another one."""
 
 
 class Answered:
@@ -44,18 +56,20 @@ class Answered:
         self.count += 1
         return command
 
-    def read(self, answers: Iterable[CommandAnswer]) -> None:
-        """Takes the answer, if it has come."""
+    def read(self, answers: Iterable[CommandAnswer]) -> bool:
+        """Takes the answer; True if it has come."""
         for answer in answers:
             if self.command is not None and answer.id == self.command.id:
                 self.command, self.error_id, self.job = None, answer.error_id, answer.job
+                return True
+        return False
 
 
 class ObjectControl:
     """What PLCs command of one axis, spindle or channel."""
 
     def __init__(self, name: str, kind: str, *, largest_override: float, timeout: float, tell: Tell) -> None:
-        """`largest_override` in percent; after `timeout` s without a message of its PLC the object is free."""
+        """`largest_override` in percent; `timeout` in s: without a message for so long the object is free; 0: never."""
         self.name = name
         self.kind = kind
         self.holder: str | None = None
@@ -65,23 +79,30 @@ class ObjectControl:
         self.edges = {unit.name: Answered() for unit in CONTROL_UNITS[kind] if unit.edge}
         self.external = Answered()
         self._largest_override = largest_override
-        self._timeout = timeout
+        self._timeout = timeout or inf
         self._tell = tell
         self._heard = 0.0
         self._last_source = ""
         self._sequences: dict[str, int] = {}
-        self._wanted: dict[str, tuple[float, str]] = {}
-        """Control unit -> command and PLC; those that no PLC serves are missing."""
-        self._sent: dict[str, tuple[float, str]] = {}
+        self._wanted: dict[str, Served] = {}
+        """By control unit; those that no PLC serves are missing."""
+        self._sent: dict[str, Served] = {}
         self._high: set[str] = set()
         """Edges and the semaphore that are on in the last message, acknowledgements that are in it."""
         self._rising: dict[str, str] = {}
         """Edges for the next block, with the PLC."""
         self._external_waits: Command | None = None
+        self._jobs = ExternalJobs(name, kind)
+        self._stopping: set[str] = set()
+        """PLCs that do not hold the object, and whose last message stops it."""
         self._acknowledged: list[int] = []
         self.serves_functions = False
         """The PLC acknowledges the functions of a channel, or the gear changes of a spindle."""
         self._told: set[tuple[int, str]] = set()
+        self._commanding = False
+        """The last message of the holder serves anything, or has an external command."""
+        self._feed_held = False
+        """The feed hold is on because the life sign is lost."""
         self._changed = False
         """What it has commanded last no longer holds, so that the same message counts again."""
         self._news = False
@@ -99,9 +120,7 @@ class ObjectControl:
             self._leave(source)
             return False
         if self.holder not in (None, source):
-            if message.commands:
-                text = f"'{source}' commands it too and is refused while '{self.holder}' holds it; nothing was changed"
-                self._tell_once(SECOND_PLC, source, text)
+            self._take_from_another(message)
             return False
         if message.commands or source == self._last_source:
             self._heard = now
@@ -109,8 +128,32 @@ class ObjectControl:
             self._take_units(message)
             self._take_external(message)
             self._take_acknowledgements(message)
-            self.holder = source if message.commands else None
+            self._commanding = message.commands
+            self.holder = source if message.commands or self._moves else None
         return self.holder is not None
+
+    @property
+    def _moves(self) -> bool:
+        """A motion that the PLC has commanded has not ended, or is still to begin."""
+        return self.command_semaphore or self._jobs.active
+
+    def _take_from_another(self, message: ControlMessage) -> None:
+        """Of a PLC that does not hold the object only a stop counts: whoever sees a reason to stop may do so."""
+        source = message.source
+        if not is_stop(message):
+            self._stopping.discard(source)
+            if message.commands:
+                text = f"'{source}' commands it too and is refused while '{self.holder}' holds it; nothing was changed"
+                self._tell_once(SECOND_PLC, source, text)
+        elif source not in self._stopping:
+            if len(self._stopping) >= MOST_SOURCES:
+                self._stopping.clear()
+            self._stopping.add(source)
+            self._jobs.stop()
+            text = (
+                f"'{source}' stops it while '{self.holder}' holds it; the stop is carried out, nothing else was changed"
+            )
+            self._tell_once(SECOND_PLC, f"stop of {source}", text)
 
     def heard(self, source: str, sequence: int, now: float) -> bool:
         """The PLC that holds the object has sent the same again: nothing else changes. False if it must be read."""
@@ -124,6 +167,7 @@ class ObjectControl:
         """What another PLC had switched on last is no edge of this one."""
         if source != self._last_source:
             self._high.clear()
+            self._stopping.discard(source)
             self._told = {(number, what) for number, what in self._told if number != SECOND_PLC}
         self._last_source, self._changed = source, False
 
@@ -145,7 +189,14 @@ class ObjectControl:
             self._wanted.clear()
             self._high.clear()
             self._rising.clear()
-            self._external_waits, self.serves_functions, self.holder = None, False, None
+            self._abandon()
+            self.serves_functions, self.holder = False, None
+
+    def _abandon(self) -> bool:
+        """Motions that the PLC has begun are halted, one still to begin does not begin; False if there are none."""
+        moves, self._external_waits = self._moves, None
+        self._jobs.abandon(unanswered=self.external.command is not None)
+        return moves
 
     def _take_units(self, message: ControlMessage) -> None:
         for unit in CONTROL_UNITS[self.kind]:
@@ -155,7 +206,7 @@ class ObjectControl:
             elif not enabled:
                 self._wanted.pop(unit.name, None)
             elif self._is_good(unit, command):
-                self._wanted[unit.name] = command, message.source
+                self._wanted[unit.name] = Served(command, message.source)
         self.serves_functions = message.serves_functions or self._serves("gear_changed")
 
     def _serves(self, name: str) -> bool:
@@ -179,7 +230,7 @@ class ObjectControl:
         if not enabled:
             self._wanted.pop(unit.name, None)
         else:
-            self._wanted[unit.name] = 0.0, source
+            self._wanted[unit.name] = Served(0.0, source)
         if not (enabled and command):
             self._high.discard(unit.name)
         elif unit.name not in self._high:
@@ -222,24 +273,36 @@ class ObjectControl:
         self._high = {name for name in self._high if not name.startswith("acknowledge ")} | names
 
     def watch(self, now: float) -> None:
-        """The object is free when its PLC has fallen silent; what it has commanded last holds."""
+        """The object is free when its PLC has fallen silent: values hold, motions that it has begun are halted."""
         if self.holder is not None and now - self._heard > self._timeout:
+            moved = f"; its motion is {'stopped' if self.kind == 'spindle' else 'halted'}" if self._abandon() else ""
             text = f"no message of '{self.holder}' for {self._timeout * 1000.0:.0f} ms"
-            self._tell(PLC_SILENT, self._text(f"{text}; what it has commanded holds, and another PLC may take it"))
-            self.holder = None
+            text += f"{moved}; its values hold until others command them, and another PLC may take it"
+            self._tell(PLC_SILENT, self._text(text))
+            self._free()
 
-    def hold_feed(self) -> bool:
-        """The life sign of the PLC is lost: a feed hold that it serves is set. False if it serves none."""
-        if not self._serves("feed_hold"):
-            return False
-        self._wanted["feed_hold"] = 1.0, self._wanted["feed_hold"][1]
+    def _free(self) -> None:
+        """Edges that the PLC served are everybody's again; values hold until others ask for another one."""
+        self.holder = None
+        self._rising.clear()
+        levels = {name: served for name, served in self._wanted.items() if name not in self.edges}
+        self._wanted = {name: served._replace(silent=True) for name, served in levels.items()}
         self._changed = self._news = True
-        return True
+
+    def hold_feed(self) -> None:
+        """The life sign of the PLC is lost, and others set the feed hold: one that it serves is no longer its own.
+
+        Its next message that serves the feed hold ends the one that was set.
+        """
+        self._feed_held = True
+        if self._wanted.pop("feed_hold", None) is not None:
+            self._changed = self._news = True
 
     # blocks
 
     def commands(self) -> Iterator[Command]:
         """The commands for the next block."""
+        yield from self._jobs.commands()
         if not self._news:
             return
         self._news = False
@@ -247,21 +310,26 @@ class ObjectControl:
             wanted, sent = self._wanted.get(unit.name), self._sent.get(unit.name)
             if unit.name in self._rising:
                 source = self._rising[unit.name]
-                yield self.edges[unit.name].give(self._overlay(unit.name, (1.0, source)))
-                sent = 0.0, source
+                yield self.edges[unit.name].give(self._overlay(unit.name, Served(1.0, source)))
+                sent = Served(0.0, source)
             if wanted != sent:
                 yield self._overlay(unit.name, wanted)
         self._rising.clear()
         self._sent = dict(self._wanted)
+        if self._feed_held and self._serves("feed_hold"):
+            self._feed_held = False
+            yield Command(self.name, "feed_hold", {"enabled": False})
         if self._external_waits is not None:
             yield self.external.give(self._external_waits)
             self._external_waits = None
 
-    def _overlay(self, name: str, wanted: tuple[float, str] | None) -> Command:
+    def _overlay(self, name: str, wanted: Served | None) -> Command:
         if wanted is None:
             return Command(self.name, "overlay", {"control_unit": name, "enabled": False})
-        value, holder = wanted
-        arguments = {"control_unit": name, "enabled": True, "value": value, "holder": holder}
+        value, holder, silent = wanted
+        arguments: dict[str, Any] = {"control_unit": name, "enabled": True, "value": value, "holder": holder}
+        if silent:
+            arguments["silent"] = True
         return Command(self.name, "overlay", arguments)
 
     def take_acknowledgements(self) -> list[int]:
@@ -276,7 +344,11 @@ class ObjectControl:
         if block.answers:
             for edge in self.edges.values():
                 edge.read(block.answers)
-            self.external.read(block.answers)
+            if self.external.read(block.answers):
+                self._jobs.begin(self.external.job)
+        self._jobs.read(block)
+        if not (self.holder is None or self._moves or self._commanding):
+            self.holder = None
 
     # texts
 
