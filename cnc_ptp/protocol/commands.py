@@ -256,6 +256,7 @@ HELD_OFF: Mapping[str, frozenset[str]] = {
             "jog",
             "home",
             "external_enable",
+            "begin_trajectory",
         }
     )
     | COUPLINGS,
