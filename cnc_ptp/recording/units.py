@@ -16,6 +16,8 @@ DISTANCES = (
     "pitch_error",
     "lead",
     "travel",
+    "path_tolerance",
+    "goal_tolerance",
 )
 """`master_position` and `master_offset` have none: their axis is the master, and may be of the other kind."""
 VELOCITIES = (
@@ -42,6 +44,8 @@ BY_NAME = {
     "path_velocity": "mm/s",
     "programmed_feed": "mm/s",
     "distance_to_go": "mm",
+    "goal_time": "s",
+    "delay": "s",
 }
 BY_SUFFIX = {
     "_rpm": "rpm",

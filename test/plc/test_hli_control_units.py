@@ -108,6 +108,7 @@ def test_others_take_back_what_only_a_plc_gives_of_the_same_command() -> None:
     assert bench.bench.state == S.STANDSTILL and bench.known["drive_ready"].holder == "p2"
 
 
+@pytest.mark.interpreted
 def test_a_refused_command_takes_nothing_back_from_a_silent_plc() -> None:
     bench = HliBench("spindle")
     bench.serve("override", 50.0, silent=True)

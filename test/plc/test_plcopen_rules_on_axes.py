@@ -102,7 +102,8 @@ def test_outputs_of_blocks_that_share_an_axis(edges: Edges) -> None:
         for trace in traces
         for before, call in zip([NEVER, *trace], trace, strict=False)
     )
-    assert sum(record.target == "x" for record in bench.records) == rising - held, "a falling edge commands nothing"
+    given = sum(record.target == "x" and record.command != "hold_stop" for record in bench.records)
+    assert given == rising - held, "a falling edge commands nothing"
 
 
 NEVER = Call(False, (), 0)
