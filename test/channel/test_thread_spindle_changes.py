@@ -55,6 +55,17 @@ def test_a_dip_of_10_percent(machine, lead, most_set, most_actual):
     assert off < 1.3 * least_error(machine.spindles["s"].gears[1].acceleration, 0.010, lead, machine.axes["z"].jerk)
 
 
+def test_the_limit_of_a_tool_keeps_the_dip_within_5_micrometres():
+    """`set_limits` is what the D word of a tool with P-TOOL-00015 gives; it counts as the spindle starts behind it."""
+    changes = "- {at: 0, to: s, do: set_limits, max_acceleration: 9000}\n"
+    dip = "- {at: 3.0, to: s, do: set_override, percent: 90}\n- {at: 4.5, to: s, do: set_override, percent: 100}"
+    bench = cut("G33 Z48 K1.5", changes + dip, machine=FAST)
+    assert max(map(abs, bench.column("s", "set_acceleration_deg_s2"))) == 9000.0
+    off = Pass(bench, 4, 1.5).error(1.0, 55.5)
+    assert 0.002 < off < 0.005 and off < 1.3 * least_error(9000.0, 0.010, 1.5, FAST.axes["z"].jerk)
+    assert Pass(bench, 4, 1.5, actual=True).error(1.0, 55.5) < 0.010
+
+
 def test_5_micrometres_are_out_of_reach_with_18000_deg_per_s2():
     """0.010 s late, 1.5 mm: 3.75 µm until the path knows, as much again until its jerk has made it slower."""
     assert least_error(18_000.0, 0.010, 1.5, 1e12) == pytest.approx(0.00375, rel=1e-3)
