@@ -38,7 +38,7 @@ def test_commands_without_a_service():
         for name in set(commands) - INTERNAL - set(SERVICES[kind])
         if kind != "axis" or name not in COUPLING_SERVICES | SERIES_SERVICES
     }
-    assert without == {"jog", "overlay", "serve", "write_parameter"}
+    assert without == {"jog", "overlay", "serve"}
     (text,) = re.findall(r"^Commands without a service: (.*?)\n\n", DOCUMENT, re.MULTILINE | re.DOTALL)
     assert {name for name in re.findall(r"`(\w+)`", text) if name in without} == without
 
