@@ -73,11 +73,11 @@ MEANT = {
     "axis": {
         "power", "reset", "set_override", "stop", "halt", "home", "emergency_stop", "compensation_stop",
         "halt_superimposed", "external_disable", "set_feedforward", "reset_feedforward", "set_friction_compensation",
-        "set_feed_release", "feed_hold",
+        "set_feed_release", "feed_hold", "hold_stop",
     },
     "spindle": {
         "power", "stop", "home", "set_override", "suppress_override", "reset_limits", "stop_at_program_end", "reset",
-        "set_feedforward", "reset_feedforward", "feed_hold",
+        "set_feedforward", "reset_feedforward", "feed_hold", "hold_stop",
     },
     "channel": {"feed_hold", "set_override", "single_block", "optional_stop", "block_skip", "reset"},
     "plc": {"auto_acknowledge", "set_life_sign", "emergency_stop", "reset", "stop_all"},
