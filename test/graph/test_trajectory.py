@@ -65,8 +65,10 @@ class TrajectoryClient(Client):
         return told.result().result
 
     def at_rest(self, *axes):
+        """And the PLC, which learns of the end of a job a block later, knows it."""
         for axis in axes:
             self.shows(axis, "state", AxisStateCode.STANDSTILL)
+        self.wait_blocks("plc", 3)
 
 
 @pytest.fixture(scope="module")
