@@ -16,6 +16,8 @@ from cnc_ptp.protocol.jobs import JOBS
 
 FOLDER = Path(__file__).parent / "made"
 WIDTH = 120
+WITHOUT_METHOD = INTERNAL | {"overlay", "serve"}
+"""Besides internal commands those of the HLI, which come by its topics and have no service."""
 HIDDEN = OF_PLC | OF_CHANNELS
 """Arguments that only the PLC and channels give."""
 EITHER = {"setpoints": "file", "table": "file"}
@@ -44,7 +46,7 @@ KINDS = {"axis": "an axis", "spindle": "a spindle", "channel": "an NC channel", 
 
 def commands_of(kind: str) -> list[str]:
     """Those that a client gives."""
-    return [command for command in COMMANDS[kind] if command not in INTERNAL]
+    return [command for command in COMMANDS[kind] if command not in WITHOUT_METHOD]
 
 
 def module(kind: str) -> str:

@@ -9,8 +9,8 @@ from typing import Literal, get_args, get_origin
 import pytest
 
 from cnc_ptp.client import Answer, Axis, Channel, Job, Plc, ProgramJob, Spindle
-from cnc_ptp.client.make_commands import FOLDER, files
-from cnc_ptp.protocol.commands import COMMANDS, INTERNAL, Argument
+from cnc_ptp.client.make_commands import FOLDER, WITHOUT_METHOD, files
+from cnc_ptp.protocol.commands import COMMANDS, Argument
 from cnc_ptp.protocol.jobs import JOBS
 
 CLASSES = {"axis": Axis, "spindle": Spindle, "channel": Channel, "plc": Plc}
@@ -31,7 +31,7 @@ TYPES = {
     "files": "Mapping[str, str]",
     "source": "str",
 }
-ROWS = [(kind, command) for kind in COMMANDS for command in COMMANDS[kind] if command not in INTERNAL]
+ROWS = [(kind, command) for kind in COMMANDS for command in COMMANDS[kind] if command not in WITHOUT_METHOD]
 
 
 def expected(argument: Argument, default: object) -> str:

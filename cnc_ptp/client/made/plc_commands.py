@@ -38,14 +38,6 @@ class PlcCommands(Asking):
         """
         return self._answer("set_input", name=name, value=value)
 
-    def serve(self, unit: str, enabled: bool) -> Answer:
-        """An external PLC answers the functions of a channel, or the gear changes of a spindle.
-
-        unit  a channel or a spindle
-        enabled  on or off
-        """
-        return self._answer("serve", unit=unit, enabled=enabled)
-
     def follow_trajectory(
         self,
         axes: Rows,

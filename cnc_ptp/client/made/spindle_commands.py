@@ -166,29 +166,3 @@ class SpindleCommands(Asking):
     def reset(self) -> Answer:
         """Leaves ErrorStop at a standstill."""
         return self._answer("reset")
-
-    def overlay(
-        self,
-        control_unit: str,
-        enabled: bool,
-        *,
-        value: float | None = None,
-        holder: str | None = None,
-        silent: bool | None = None,
-    ) -> Answer:
-        """An external PLC serves a control unit, or gives it back ([plc_hli.md](plc_hli.md)).
-
-        control_unit  of the unit ([hli_objects.md](hli_objects.md))
-        enabled  on or off
-        value  switches 0 and 1, overrides in %; 1 has an edge carried out; left out: with `enabled` off only
-        holder  name of the PLC; left out: none
-        silent  the PLC has fallen silent: its value holds until others command the same; left out: off
-        """
-        return self._answer(
-            "overlay",
-            control_unit=control_unit,
-            enabled=enabled,
-            value=value,
-            holder=holder,
-            silent=silent,
-        )

@@ -12,7 +12,7 @@ from rclpy.action.server import GoalEvent
 
 from cnc_ptp import action
 from cnc_ptp.errors import CncError
-from cnc_ptp.nodes.unit.jobs import FEEDBACK_BLOCKS, Goal
+from cnc_ptp.nodes.unit.jobs import FEEDBACK_BLOCKS, Goal, conclude
 from cnc_ptp.nodes.unit.requests import NOT_GIVEN, RUN_OVER
 from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters
@@ -58,7 +58,7 @@ class FunctionBlockActions:
                 node,
                 action.FunctionBlock,
                 f"{unit}/{NAME}",
-                lambda goal: conclude(goal, action.FunctionBlock.Result()),  # not asked: `_begin` takes every goal
+                lambda goal: action.FunctionBlock.Result(),  # not asked: `_begin` takes every goal
                 handle_accepted_callback=partial(self._begin, unit),
                 cancel_callback=self._cancel,
             )
@@ -115,18 +115,7 @@ class FunctionBlockActions:
         self._open = []
 
     def _finish(self, unit: str, goal: Goal, result: Any) -> None:
-        self._servers[unit].notify_execute(goal, lambda goal: conclude(goal, result))
-
-
-def conclude(goal: Goal, result: Any) -> Any:
-    """Brings a goal into its last state."""
-    if result.done:
-        goal.succeed()
-    elif goal.is_cancel_requested:
-        goal.canceled()
-    else:
-        goal.abort()
-    return result
+        self._servers[unit].notify_execute(goal, lambda goal: conclude(goal, result, success=result.done))
 
 
 def given_inputs(request: Any, where: str) -> dict[str, Any]:

@@ -50,7 +50,7 @@ class JobServer:
             node,
             action_type,
             name,
-            lambda goal: conclude(goal, action_type.Result()),  # not asked: `_begin` takes every goal
+            lambda goal: action_type.Result(),  # not asked: `_begin` takes every goal
             goal_callback=lambda goal: GoalResponse.ACCEPT if self._goal is None else GoalResponse.REJECT,
             handle_accepted_callback=self._begin,
             cancel_callback=self._cancel,
@@ -87,7 +87,7 @@ class JobServer:
         """Answers the goal; the next one may come."""
         goal, self._goal = self._goal, None
         assert goal is not None
-        self._server.notify_execute(goal, lambda goal: conclude(goal, result))
+        self._server.notify_execute(goal, lambda goal: conclude(goal, result, success=result.success))
 
     def _cancel(self, goal: Goal) -> CancelResponse:
         if goal is not self._goal:
@@ -117,12 +117,12 @@ class JobServer:
             self._goal.publish_feedback(feedback)
 
 
-def conclude(goal: Goal, result: Any) -> Any:
+def conclude(goal: Goal, result: Any, *, success: bool) -> Any:
     """Brings a goal into its last state."""
-    if goal.is_cancel_requested:
-        goal.canceled()
-    elif result.success:
+    if success:
         goal.succeed()
+    elif goal.is_cancel_requested:
+        goal.canceled()
     else:
         goal.abort()
     return result
