@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import Any, TypeVar
 
 from cnc_ptp.client.faults import UNSEEN
@@ -17,7 +18,7 @@ KEPT = 1000
 T = TypeVar("T")
 
 
-class BlockUnit:
+class BlockUnit(ABC):
     """What plc/plcopen UnitReference asks for: `MC_MoveAbsolute(m.x)`."""
 
     def __init__(self, session: Session, name: str) -> None:
@@ -35,8 +36,9 @@ class BlockUnit:
         self._begun: dict[int, int] = {}
         """Job -> cycle of its command."""
 
+    @abstractmethod
     def _prepared(self, command: str, arguments: dict[str, Any]) -> dict[str, Any]:
-        raise NotImplementedError
+        """The arguments as they are sent. Raises CncError for those that cannot be."""
 
     def give(self, command: str, **arguments: Any) -> int:
         """Gives a command for the next block; the ticket for its answer. Raises CncError 26172 after the end."""
