@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.axis_sources import MasterSource, PathSource
@@ -34,6 +34,7 @@ from cnc_ptp.axis.trajectory_watch import TrajectoryWatch
 from cnc_ptp.control.commands import FEEDFORWARD_WAITS, ControlCommands, feedforward_warning
 from cnc_ptp.control.control_loop import ControlColumns, ControlLoop
 from cnc_ptp.control.drives import Drive, make_drive
+from cnc_ptp.control.drives.sercos import idns
 from cnc_ptp.control.faults import FOLLOWING_ERROR
 from cnc_ptp.control.feedforward import CouplingLimits
 from cnc_ptp.motion.setpoints import MotionState, Setpoints
@@ -181,6 +182,12 @@ class AxisUnit(Unit):
             return 0
         axis.drop_waiting(cycle)
         return jobs.begin(cycle)
+
+    def is_held_off(self, command: str, arguments: Mapping[str, Any]) -> bool:
+        """See Unit; the end of a jog is no motion, and a drive that homes on its own is one."""
+        if command == "write_drive_parameter":
+            return bool(arguments["idn"] == idns.HOMING)
+        return super().is_held_off(command, arguments) and not (command == "jog" and not arguments["velocity"])
 
     def do_hold_stop(self, cycle: int, *, enabled: bool) -> None:
         """See Unit; an axis that follows a channel or a master is stopped there (23005, 23040)."""

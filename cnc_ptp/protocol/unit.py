@@ -47,8 +47,6 @@ STOP_HOLDS = 22165
 """Refusal: MC_Stop holds the unit while its execute is true."""
 THE_PLC, A_CLIENT = "the PLC", "a client"
 """Who may hold a stop: what commands in blocks, and by services."""
-DRIVE_PROCEDURE = "S-0-0148"
-"""Parameter by which a drive homes the axis on its own."""
 
 
 class Unit(ABC):
@@ -163,10 +161,12 @@ class Unit(ABC):
         """Holds the unit at its standstill, or no longer: the PLC and clients each their own hold."""
         (self._stop_holders.add if enabled else self._stop_holders.discard)(self._given_by)
 
+    def is_held_off(self, command: str, arguments: Mapping[str, Any]) -> bool:
+        """The command would move the unit, which a held stop does not permit."""
+        return command in HELD_OFF[self.kind]
+
     def _refuse_held(self, command: str, arguments: Mapping[str, Any]) -> None:
-        drive_moves = command == "write_drive_parameter" and arguments["idn"] == DRIVE_PROCEDURE
-        moves = command in HELD_OFF[self.kind] and not (command == "jog" and not arguments["velocity"])
-        if self._stop_holders and (moves or drive_moves):
+        if self._stop_holders and self.is_held_off(command, arguments):
             holders = " and ".join(sorted(self._stop_holders, reverse=True))
             reason = f"MC_Stop of {holders} holds the {self.kind} while its execute is true (hold_stop)"
             raise self._refusal(command, STOP_HOLDS, reason)
