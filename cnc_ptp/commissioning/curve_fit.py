@@ -26,9 +26,9 @@ from cnc_ptp.commissioning.faults import (
     NO_HYPERBOLA,
 )
 from cnc_ptp.errors import CncError
+from cnc_ptp.motion.polynomials import roots_between, value
 from cnc_ptp.parameters import CurveParameters
 from cnc_ptp.spindle.acceleration_curves import CurvePiece, raw_pieces
-from cnc_ptp.spindle.polynomials import roots_between, value
 
 TIGHT = {"ftol": 1e-15, "xtol": 1e-15, "gtol": 1e-15}
 Coefficients = tuple[float, float, float]

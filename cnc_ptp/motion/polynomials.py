@@ -17,19 +17,25 @@ def value(coefficients: Sequence[float], x: float) -> float:
     return total
 
 
-def roots_between(coefficients: Sequence[float], low: float, high: float) -> list[float]:
-    """Real roots in the open interval at which the sign changes, ascending.
+def derivative(coefficients: Sequence[float]) -> list[float]:
+    """Of a constant: none, which is 0."""
+    return [k * coefficient for k, coefficient in enumerate(coefficients)][1:]
+
+
+def roots_between(coefficients: Sequence[float], low: float, high: float, *, touching: bool = False) -> list[float]:
+    """Real roots in the open interval at which the sign changes, ascending; `touching`: multiple roots, too.
 
     The roots of the derivative cut the interval into monotonic pieces; each of them has one root at most.
     """
     if len(coefficients) < 2:
         return []
-    derivative = [k * coefficient for k, coefficient in enumerate(coefficients)][1:]
-    borders = [low, *roots_between(derivative, low, high), high]
+    borders = [low, *roots_between(derivative(coefficients), low, high, touching=touching), high]
     roots = []
     for left, right in pairwise(borders):
         if value(coefficients, left) * value(coefficients, right) < 0.0:
             roots.append(bisect(coefficients, left, right))
+        elif touching and right < high and value(coefficients, right) == 0.0:
+            roots.append(right)
     return roots
 
 
@@ -50,7 +56,7 @@ def bisect(coefficients: Sequence[float], low: float, high: float) -> float:
 def crossing(coefficients: Sequence[float], level: float, end: float) -> float:
     """Where a polynomial, monotonic in 0 … end, reaches `level`: Newton's method, kept inside by bisection."""
     shifted = [coefficients[0] - level, *coefficients[1:]]
-    derivative = [k * coefficient for k, coefficient in enumerate(shifted)][1:]
+    slopes = derivative(shifted)
     rises = value(shifted, end) > 0.0
     low, high = 0.0, end
     x = -shifted[0] / shifted[1] if shifted[1] else 0.5 * end
@@ -64,7 +70,7 @@ def crossing(coefficients: Sequence[float], level: float, end: float) -> float:
             high = x
         else:
             low = x
-        slope = value(derivative, x)
+        slope = value(slopes, x)
         following = x - miss / slope if slope else 0.5 * (low + high)
         if following == x or not low < high:
             return x

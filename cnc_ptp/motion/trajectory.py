@@ -9,18 +9,17 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from cnc_ptp.motion.polynomials import derivative, roots_between, value
 from cnc_ptp.motion.profile import Profile
 from cnc_ptp.motion.setpoints import MotionState
 
 Coefficients = list[float]
 """c0, c1, … of a polynomial."""
-HALVINGS: Final = 60
-"""Of an interval of time in which a polynomial changes its sign."""
 
 
 class TrajectoryPoint(NamedTuple):
@@ -53,16 +52,16 @@ class TrajectorySegment:
     def state_at(self, d: float) -> MotionState:
         """(p, v, a, j) at `d` seconds after its begin."""
         return (
-            value_at(self.position, d),
-            value_at(self.velocity, d),
-            value_at(self.acceleration, d),
-            value_at(self.jerk, d),
+            value(self.position, d),
+            value(self.velocity, d),
+            value(self.acceleration, d),
+            value(self.jerk, d),
         )
 
     def extrema(self, polynomial: Coefficients) -> Iterator[Extremum]:
         """At its ends, and where the derivative is 0; in the order of time."""
-        for d in (0.0, *roots(derivative(polynomial), self.duration), self.duration):
-            yield Extremum(self.begin + d, value_at(polynomial, d))
+        for d in (0.0, *roots_between(derivative(polynomial), 0.0, self.duration, touching=True), self.duration):
+            yield Extremum(self.begin + d, value(polynomial, d))
 
 
 class Trajectory(Profile):
@@ -119,44 +118,3 @@ def hermite(begin: TrajectoryPoint, end: TrajectoryPoint) -> Coefficients:
         (-30.0 * way + (16.0 * v0 + 14.0 * v1) * t + (3.0 * a0 - 2.0 * a1) * t**2) / (2.0 * t**4),
         (12.0 * way - 6.0 * (v0 + v1) * t + (a1 - a0) * t**2) / (2.0 * t**5),
     ]
-
-
-def derivative(polynomial: Coefficients) -> Coefficients:
-    """Of a constant: none, which is 0."""
-    return [index * factor for index, factor in enumerate(polynomial)][1:]
-
-
-def value_at(polynomial: Coefficients, d: float) -> float:
-    value = 0.0
-    for factor in reversed(polynomial):
-        value = value * d + factor
-    return value
-
-
-def roots(polynomial: Coefficients, end: float) -> list[float]:
-    """Where a polynomial is 0 between 0 and `end`, both excluded, in ascending order.
-
-    Between two roots of its derivative it has one root at most, which bisection finds.
-    """
-    if len(polynomial) < 2:
-        return []
-    turns = [0.0, *roots(derivative(polynomial), end), end]
-    found: list[float] = []
-    for low, high in pairwise(turns):
-        if value_at(polynomial, low) * value_at(polynomial, high) < 0.0:
-            found.append(bisected(polynomial, low, high))
-        elif value_at(polynomial, high) == 0.0 and high < end:
-            found.append(high)
-    return found
-
-
-def bisected(polynomial: Coefficients, low: float, high: float) -> float:
-    """The root between `low` and `high`, where the polynomial has different signs."""
-    rising = value_at(polynomial, high) > 0.0
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        if (value_at(polynomial, middle) > 0.0) == rising:
-            high = middle
-        else:
-            low = middle
-    return 0.5 * (low + high)

@@ -15,8 +15,8 @@ from itertools import pairwise
 from math import inf
 from typing import NamedTuple
 
+from cnc_ptp.motion.polynomials import crossing, roots_between, value
 from cnc_ptp.parameters import CurveParameters
-from cnc_ptp.spindle.polynomials import crossing, roots_between, value
 
 ORDER = 12
 """Highest power of time in a segment of a ramp …"""

@@ -6,8 +6,8 @@ from bisect import bisect_right
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
+from cnc_ptp.motion.polynomials import value
 from cnc_ptp.spindle.acceleration_curves import RampPart
-from cnc_ptp.spindle.polynomials import value
 
 Motion = tuple[float, float, float]
 """Position in °, speed in °/s, acceleration in °/s²."""

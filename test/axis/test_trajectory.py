@@ -12,7 +12,8 @@ from job_support import ABORTED, ACTIVE, DONE, FAILED, end_of, job, start_of
 from machine_support import CYCLE_TIME, UnitBench, axis_bench
 from scipy.interpolate import BPoly, CubicHermiteSpline
 
-from cnc_ptp.motion.trajectory import Trajectory, TrajectoryPoint, derivative, roots, value_at
+from cnc_ptp.motion.polynomials import derivative, roots_between, value
+from cnc_ptp.motion.trajectory import Trajectory, TrajectoryPoint
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import StatusBit
 
@@ -138,9 +139,12 @@ def test_roots_are_those_of_numpy() -> None:
         if (np.diff(inside) < 0.01).any():
             continue
         polynomial = np.polynomial.polynomial.polyfromroots(np.append(inside, -2.0)).tolist()
-        np.testing.assert_allclose(roots(polynomial, 1.0), inside, atol=1e-9)
-    assert roots([0.0, 1.0], 1.0) == [] and roots([-1.0, 2.0], 1.0) == [0.5]
-    assert derivative([3.0]) == [] and value_at([], 5.0) == 0.0
+        np.testing.assert_allclose(roots_between(polynomial, 0.0, 1.0, touching=True), inside, atol=1e-9)
+    assert roots_between([0.0, 1.0], 0.0, 1.0) == [] and roots_between([-1.0, 2.0], 0.0, 1.0) == [0.5]
+    assert derivative([3.0]) == [] and value([], 5.0) == 0.0
+    cube, square = [-0.125, 0.75, -1.5, 1.0], [0.25, -1.0, 1.0]  # (d - 1/2)³, (d - 1/2)²
+    assert roots_between(cube, 0.0, 1.0, touching=True) == roots_between(square, 0.0, 1.0, touching=True) == [0.5]
+    assert roots_between(square, 0.0, 1.0) == []
 
 
 # ---------------------------------------------------------------- tolerances

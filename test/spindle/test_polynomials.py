@@ -7,7 +7,7 @@ import random
 import numpy as np
 import pytest
 
-from cnc_ptp.spindle.polynomials import crossing, roots_between, value
+from cnc_ptp.motion.polynomials import crossing, roots_between, value
 
 
 def test_value_is_horner() -> None:
