@@ -66,7 +66,7 @@ def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
 
 
 def p99(values: Sequence[float]) -> float:
-    return quantiles(values, n=100)[98]
+    return quantiles(values, n=100, method="inclusive")[98]
 
 
 def measure(calls: int, seconds: float) -> PlcRun:
@@ -122,6 +122,7 @@ class Plc:
 
     def __init__(self) -> None:
         import rclpy
+        from rclpy.serialization import deserialize_message, serialize_message
 
         from cnc_ptp import msg, srv
         from cnc_ptp.nodes import process
@@ -134,21 +135,27 @@ class Plc:
         self._writers = {
             unit: self._node.create_publisher(msg.Override, f"/{unit}/override", PLC_INPUT) for unit in FLOODED
         }
-        self.blocks: dict[str, Any] = {}
+        self.blocks: dict[str, bytes] = {}
+        self._types = dict.fromkeys(FLOODED, msg.AxisBlock) | {"plc": msg.PlcBlock, "channel": msg.ChannelBlock}
         self._changed: Any = None
-        types = {"plc": msg.PlcBlock, "channel": msg.ChannelBlock}
-        for unit in ("plc", *FLOODED):
-            self._node.create_subscription(types.get(unit, msg.AxisBlock), block_topic(unit), self._keep(unit), BLOCKS)
+        self._waits, self._read, self._written = False, deserialize_message, serialize_message
+        for unit, block in self._types.items():
+            self._node.create_subscription(block, block_topic(unit), self._keep(unit), BLOCKS, raw=True)
         self._executor = process.EventsExecutor()
         self._executor.add_node(self._node)
 
-    def _keep(self, unit: str) -> Callable[[Any], None]:
-        def keep(block: Any) -> None:
+    def _keep(self, unit: str) -> Callable[[bytes], None]:
+        """Only what is looked at is deserialised."""
+
+        def keep(block: bytes) -> None:
             self.blocks[unit] = block
-            if unit == "x" and self._changed is None and any(block.set_acceleration):
-                self._changed = block
+            if unit == "x" and self._waits and any((read := self._block("x")).set_acceleration):
+                self._changed, self._waits = read, False
 
         return keep
+
+    def _block(self, unit: str) -> Any:
+        return self._read(self.blocks[unit], self._types[unit])
 
     def wait(self, condition: Callable[[], Any]) -> None:
         deadline = time.monotonic() + PATIENCE
@@ -180,7 +187,7 @@ class Plc:
     def reaction(self, percent: float) -> tuple[float, int]:
         """From an override message to the first block of x in which it accelerates: milliseconds and blocks."""
         self.pause(SETTLING + PAUSE)
-        self._changed, newest = None, self.blocks["plc"].first_cycle
+        self._changed, self._waits, newest = None, True, self._block("plc").first_cycle
         sent = time.perf_counter()
         self._writers["x"].publish(self._message(valid=True, percent=percent))
         self.wait(lambda: self._changed is not None)
@@ -191,11 +198,12 @@ class Plc:
         begin, percent = time.monotonic(), 0.0
         for number in range(messages):
             percent = 50.0 + number * 7 % 41
+            message = self._written(self._message(valid=True, percent=percent))
             for writer in self._writers.values():
-                writer.publish(self._message(valid=True, percent=percent))
+                writer.publish(message)
             while (left := begin + (number + 1) * PERIOD - time.monotonic()) > 0.0:
                 self._executor.spin_once(timeout_sec=left)
         return percent
 
     def override_of(self, unit: str) -> float:
-        return float(self.blocks[unit].override_percent[-1])
+        return float(self._block(unit).override_percent[-1])
