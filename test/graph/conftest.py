@@ -2,19 +2,21 @@
 
 import os
 import socket
+from itertools import count
 
 import pytest
 
 FROM_OUTSIDE = ("ROS_AUTOMATIC_DISCOVERY_RANGE", "FASTDDS_DEFAULT_PROFILES_FILE", "FASTDDS_BUILTIN_TRANSPORTS")
+WISHES = count(os.getpid() * 47)
 
 
 @pytest.fixture(scope="module", autouse=True)
-def ros_domain(request):
-    """One of 90 domains by module and process, so that runs beside each other do not meet."""
+def ros_domain():
+    """The next of 90 domains: neither modules of a session nor sessions beside each other meet."""
     before = dict(os.environ)
     for name in FROM_OUTSIDE:
         os.environ.pop(name, None)
-    number = free_domain(hash_of(request.module.__name__) + os.getpid())
+    number = free_domain(next(WISHES))
     os.environ["ROS_DOMAIN_ID"] = str(number)
     yield number
     os.environ.clear()
@@ -32,7 +34,3 @@ def free_domain(wish):
                 continue
             return domain
     raise AssertionError("90 runs at once")
-
-
-def hash_of(text):
-    return sum(ord(character) * (index + 1) for index, character in enumerate(text))

@@ -33,7 +33,7 @@ def client(monkeypatch):
     for command in ("jog", "status"):
         monkeypatch.setattr(f"cnc_ptp.commands.client.{command}.PATIENCE", 0.2)
     yield client
-    client.destroy_node()
+    client.end()
     rclpy.try_shutdown()
 
 
