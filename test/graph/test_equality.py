@@ -139,7 +139,11 @@ def test_ptp_graph_equals_the_offline_run(folder):
     assert len(verified(folder / "b.mcap").states) == 4
 
 
-@pytest.mark.parametrize("options", [[], ["--composed", "--free-run"]], ids=str)
+graphs = pytest.mark.parametrize("options", [["--free-run"], ["--composed", "--free-run"]], ids=" ".join)
+"""Real time only where the clock has a part in it: test_graph_equals_the_offline_run."""
+
+
+@graphs
 def test_slaves_in_the_graph_equal_the_offline_run(folder, options):
     """Couplings over processes: the same numbers, and no cycle of delay."""
     job = (PTP, "--scenario", folder / "slaves.yaml")
@@ -153,7 +157,7 @@ def test_slaves_in_the_graph_equal_the_offline_run(folder, options):
     assert np.abs(y + 0.5 * x).max() <= 1e-9 and x[-1] > 500.0
 
 
-@pytest.mark.parametrize("options", [[], ["--free-run"], ["--composed"]], ids=str)
+@graphs
 def test_programs_that_are_interpreted_while_they_run_equal_the_offline_run(folder, options):
     """Actual positions, a cycle, tools and offsets in files of their own, a computation of many cycles, a message."""
     job = (folder / "mill.yaml", "--program", folder / "language.nc")
@@ -184,7 +188,7 @@ MEASURING_SCENARIO = (
 )
 
 
-@pytest.mark.parametrize("options", [[], ["--free-run"], ["--composed"]], ids=str)
+@graphs
 def test_measuring_in_the_graph_equals_the_offline_run(folder, options):
     """Signals of simulated probes and of the PLC: the same instants, positions and stops."""
     (folder / "measuring.nc").write_text(MEASURING)
@@ -221,7 +225,7 @@ CONTROLLED_SCENARIO = """
 """
 
 
-@pytest.mark.parametrize("options", [[], ["--free-run"], ["--composed"]], ids=str)
+@graphs
 def test_program_control_in_the_graph_equals_the_offline_run(folder, options):
     """A start at a block, stops behind motions, manual blocks with a file, skip levels, a second start in a file."""
     (folder / "side.nc").write_text("G91 Y1\nG90 M8\nM29\n")
@@ -270,7 +274,7 @@ LINKED_SCENARIO = """
 """
 
 
-@pytest.mark.parametrize("options", [[], ["--free-run"], ["--composed"]], ids=str)
+@graphs
 def test_linked_blocks_in_the_graph_equal_the_offline_run(folder, options):
     """Corners, arcs and short blocks that the path runs through, with override and feed hold."""
     (folder / "linked.nc").write_text(LINKED)
@@ -303,7 +307,7 @@ M30
 
 
 @pytest.mark.parametrize("bad", [False, True], ids=["good", "bad"])
-@pytest.mark.parametrize("options", [[], ["--free-run"], ["--composed"]], ids=str)
+@graphs
 def test_a_program_that_is_read_while_it_runs_equals_the_offline_run(folder, options, bad):
     """Too few blocks for the feed, override and feed hold, a subroutine, a loop, an actual position; or a fault."""
     machine = folder / "streamed.yaml"
@@ -326,7 +330,7 @@ def test_a_program_that_is_read_while_it_runs_equals_the_offline_run(folder, opt
         assert (reason in result.stdout + result.stderr) == bad
 
 
-@pytest.mark.parametrize("options", [[], ["--composed", "--free-run"]], ids=str)
+@graphs
 def test_superpositions_on_a_path_equal_the_offline_run(folder, options):
     """The flying saw and external setpoints on top of a circle, with z as the conveyor."""
     machine = without_z_in_the_channel(folder)
@@ -419,7 +423,7 @@ TAPPING_SCENARIO = """
 """
 
 
-@pytest.mark.parametrize("options", [[], ["--free-run"], ["--composed"]], ids=str)
+@graphs
 def test_tapping_in_the_graph_equals_the_offline_run(folder, options):
     """The spindle turns with the path in another process."""
     (folder / "tapping.nc").write_text(TAPPING)
@@ -439,7 +443,7 @@ C_AXIS = "G00 X30 Z5\n#CAX\n#FACE [X, C]\nG01 X20 C0 F3000\nX10 C8\n#FACE OFF\nG
 WITH_SPINDLE = {"thread": THREAD, "turning": TURNING, "c_axis": C_AXIS}
 
 
-@pytest.mark.parametrize("options", [["--free-run"], ["--composed"]], ids=str)
+@graphs
 @pytest.mark.parametrize("motion", list(WITH_SPINDLE))
 def test_path_with_a_spindle_in_the_graph_equals_the_offline_run(folder, motion, options):
     """The path follows the reports of a spindle in another process, or moves it as its C axis."""
