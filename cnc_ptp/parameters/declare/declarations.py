@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -135,6 +135,8 @@ class Catalogue:
     arrays: Mapping[str, Array]
     by_key: Mapping[str, Mapping[str, Declaration]]
     """Node kind -> key -> declaration."""
+    aliases: Mapping[str, str] = field(default_factory=dict)
+    """Old spellings of a part of a name, which lists may use -> the part in the declarations."""
 
     def of_node(self, node_kind: str) -> Iterator[Declaration]:
         return iter(self.by_key[node_kind].values())
@@ -173,7 +175,8 @@ def make_catalogue(data: Mapping[str, Any]) -> Catalogue:
         for kind in NODE_KINDS:
             if declaration.belongs_to(kind):
                 by_key[kind][declaration.key] = declaration
-    return Catalogue({declaration.id: declaration for declaration in declarations}, arrays, by_key)
+    by_id = {declaration.id: declaration for declaration in declarations}
+    return Catalogue(by_id, arrays, by_key, data.get("aliases", {}))
 
 
 def make_declaration(number: str, entry: Mapping[str, Any]) -> Declaration:

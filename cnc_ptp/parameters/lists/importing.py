@@ -1,0 +1,190 @@
+"""A folder of lists -> the text of a machine file, and a report of what became of each line."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+from cnc_ptp.parameters import errors
+from cnc_ptp.parameters.declare import ids
+from cnc_ptp.parameters.errors import ParameterError
+from cnc_ptp.parameters.lists.folder import Folder, ListFile, entry_of, is_count
+from cnc_ptp.parameters.lists.kinds import COMPENSATION, STARTUP, Kind, kind_of
+from cnc_ptp.parameters.lists.lines import Line
+from cnc_ptp.parameters.lists.machine_text import HEAD, MachineText, Origin
+from cnc_ptp.parameters.lists.marks import list_mark
+from cnc_ptp.parameters.lists.names import BadIndex, Found, UnknownName, resolve
+from cnc_ptp.parameters.lists.problems import ListError, ListProblem
+from cnc_ptp.parameters.lists.report import CORRECTED, DEFAULTED, NOTICE, READ, UNKNOWN, ListCount, Report
+from cnc_ptp.parameters.lists.units import UNIT_LISTS, Unit, Units, find_units, names_in_startup, place_of
+from cnc_ptp.parameters.lists.values import BadLine, split_value, to_yaml
+from cnc_ptp.parameters.loader import load_machine
+from cnc_ptp.parameters.view.machine_view import MachineParameters
+
+
+class Imported(NamedTuple):
+    """A machine file, the machine that it describes, and the report."""
+
+    text: str
+    machine: MachineParameters
+    report: Report
+
+
+def import_lists(
+    folder: str, files: Mapping[str, bytes], *, chosen: Mapping[str, Kind] | None = None, strict: bool = False
+) -> Imported:
+    """The machine of the files of a folder, by name; `chosen`: kinds of lists that their names do not say.
+
+    Raises ListError with all problems; if `strict`, an unknown line is one.
+    """
+    report = Report()
+    reader = Folder(folder, files, chosen or {}, report)
+    lists = reader.read()
+    problems = reader.problems
+    named = {kind: names for kind, _, names in names_in_startup(reader.startup)}
+    units = find_units(lists, named, problems)
+    problems += wrong_counts(reader.startup, units)
+    writer = Writer(report, problems, strict)
+    writer.machine(reader.startup, folder, units)
+    for unit in units:
+        writer.unit(unit)
+    machine = checked(writer.text, Origin(place_of(reader.startup, folder)), problems)
+    if problems or machine is None:
+        raise ListError(problems)
+    add_findings(writer.text, machine, units, report)
+    return Imported(writer.text.text, machine, report)
+
+
+def wrong_counts(startup: ListFile | None, units: Units) -> Iterator[ListProblem]:
+    """Nodes that the start-up list names, against the lists."""
+    for kind, line, names in names_in_startup(startup):
+        number = len(units.of(kind))
+        if len(names) != number:
+            text = f"{line.name} names {len(names)}, the folder has the lists of {number}; name each of them, or none"
+            yield ListProblem(errors.COUNT, line.value_place, text, line.text)
+
+
+class Writer:
+    """Writes the sections of the machine file."""
+
+    def __init__(self, report: Report, problems: list[ListProblem], strict: bool) -> None:
+        self.report, self.problems, self.strict = report, problems, strict
+        self.text = MachineText()
+        self.text.add(HEAD)
+        self.first: dict[str, Line] = {}
+
+    def machine(self, startup: ListFile | None, folder: str, units: Units) -> None:
+        """The section /machine: its units, and what else the start-up list has."""
+        origin = Origin(place_of(startup, folder))
+        self.text.section("machine", origin)
+        for name, kind in UNIT_LISTS.items():
+            self.text.names(name, [unit.name for unit in units.of(kind)], origin)
+        self.first = {}
+        if startup:
+            self.add_list("machine", startup)
+
+    def unit(self, unit: Unit) -> None:
+        self.text.section(unit.name, Origin(unit.own.place))
+        self.first = {}
+        for entry in unit.lists:
+            self.add_list(unit.name, entry)
+
+    def add_list(self, node: str, entry: ListFile) -> None:
+        """The lines of one list."""
+        self.report.lists.append(ListCount(entry.path, entry.kind.title, node, entry.encoding))
+        self.text.mark(list_mark(entry.kind, entry.name))
+        lines = list(entry.lines)
+        while lines and lines[-1].is_blank:
+            lines.pop()
+        for line in lines:
+            if line.is_blank:
+                self.text.add("")
+            elif line.comment is not None:
+                self.text.comment(line.comment)
+            elif not self.is_frame(line, entry.kind):
+                self.line(line, entry.kind)
+
+    def is_frame(self, line: Line, kind: Kind) -> bool:
+        """Whether a line only says what the machine file has in another form: files of lists, their numbers, units.
+
+        Its remark becomes a comment.
+        """
+        if kind is not STARTUP or not (entry_of(line) or is_count(line) or line.name in UNIT_LISTS):
+            return False
+        self.frame(line)
+        return True
+
+    def frame(self, line: Line) -> None:
+        self.report.add(READ, line.place, line.text)
+        if remark := line.rest.partition("#")[2].strip():
+            self.text.comment(f"{line.name}: {remark}")
+
+    def line(self, line: Line, kind: Kind) -> None:
+        """A line with a value, or one that is kept as it is."""
+        if not line.name:
+            self.keep(line, "no name of a parameter begins it")
+            return
+        try:
+            found = resolve(kind.node, line.name)
+            written = split_value(found.declaration, line.rest)
+        except UnknownName as reason:
+            self.keep(line, f"{line.name}: {reason}")
+        except BadIndex as reason:
+            self.problem(errors.INDEX, line, f"{line.name}: {reason}")
+        except BadLine as reason:
+            self.problem(errors.LIST_LINE, line, f"{line.name}: {reason}")
+        else:
+            if kind is COMPENSATION and found.declaration.id == ids.KOPF_ACHS_NR:
+                self.frame(line)
+            else:
+                self.value(line, kind, found, to_yaml(found.declaration, written.value), written.remark)
+
+    def value(self, line: Line, kind: Kind, found: Found, value: str, remark: str) -> None:
+        name = found.declaration.ros_name(found.indexes)
+        if (first := self.first.setdefault(name, line)) is not line:
+            text = f"{found.declaration.id} {found.declaration.list_style_name(found.indexes)} is given twice"
+            where = f"line {first.place.line}" if first.place.file == line.place.file else f"{first.place}"
+            self.problem(errors.DUPLICATE_KEY, line, f"{text}, first in {where}; delete one of the lines")
+            return
+        other = kind_of(found.declaration)
+        moved = f"it belongs into the {other.title}, where an export puts it" if other is not kind else ""
+        corrections = [correction for correction in (found.correction, moved) if correction]
+        for correction in corrections:
+            self.report.add(CORRECTED, line.place, correction)
+        if not corrections:
+            self.report.add(READ, line.place, line.text)
+        self.text.value(name, value, remark, Origin(line.value_place, line.text))
+
+    def keep(self, line: Line, reason: str) -> None:
+        """A line that nothing reads; an export writes it again."""
+        if self.strict:
+            self.problem(errors.UNKNOWN_NAME, line, reason)
+        self.report.add(UNKNOWN, line.place, f"{reason}; kept")
+        self.text.unknown(line.kept)
+
+    def problem(self, error_id: int, line: Line, text: str) -> None:
+        self.problems.append(ListProblem(error_id, line.value_place, text, line.text))
+
+
+def checked(text: MachineText, nowhere: Origin, problems: list[ListProblem]) -> MachineParameters | None:
+    """The machine of a text; what its reader refuses goes to `problems` with the place in its list."""
+    try:
+        return load_machine(text.text, "machine.yaml")
+    except ParameterError as error:
+        for problem in error.problems:
+            origin = text.origin(problem.place.line, nowhere)
+            problems.append(ListProblem(problem.error_id, origin.place, problem.text, origin.line))
+    return None
+
+
+def add_findings(text: MachineText, machine: MachineParameters, units: Units, report: Report) -> None:
+    """What the machine says of its values, and the defaults of what no list gives."""
+    for notice in machine.warnings:
+        origin = text.origin(notice.place.line, Origin(notice.place))
+        report.add(NOTICE, origin.place, f"{notice.parameter}: {notice.text}")
+    for unit in units:
+        for parameter in machine.raw(unit.name).parameters():
+            declaration, indexes, value = parameter
+            if not machine.raw(unit.name).is_given(declaration.id, *indexes):
+                name = declaration.list_style_name(indexes)
+                report.add(DEFAULTED, unit.own.place, f"{declaration.id} {name} is {value!r}")
