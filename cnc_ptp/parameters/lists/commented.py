@@ -56,15 +56,17 @@ class CommentReader(Reader):
 
     def without_tags(self, events: Iterator[Any]) -> Iterator[Any]:
         for event in super().without_tags(events):
-            for mark in (event.start_mark, event.end_mark):
+            start, end = event.start_mark, event.end_mark
+            for mark in (start, end):
                 self.ends[mark.line] = max(self.ends.get(mark.line, 0), mark.column)
-            for line in range(event.start_mark.line, event.end_mark.line):
+            for line in range(start.line, end.line):
                 self.ends[line] = 1 << 30  # inside a text of several lines nothing is a comment
             yield event
 
     def value(self, event: Any, events: Iterator[Any]) -> Value:
         if isinstance(event, yaml.ScalarEvent) and not event.style:
-            self.raw[event.start_mark.line + 1, event.start_mark.column + 1] = event.value
+            place = self.place(event)
+            self.raw[place.line, place.column] = event.value
         return super().value(event, events)
 
 

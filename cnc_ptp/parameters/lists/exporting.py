@@ -17,7 +17,7 @@ from cnc_ptp.parameters.lists.marks import LIST, UNKNOWN, comment_line, read_mar
 from cnc_ptp.parameters.lists.problems import ListError, ListProblem
 from cnc_ptp.parameters.lists.text import FOREIGN
 from cnc_ptp.parameters.lists.units import UNIT_LISTS
-from cnc_ptp.parameters.lists.values import to_list
+from cnc_ptp.parameters.lists.values import NO_ITEMS, list_text, to_list
 from cnc_ptp.parameters.loader import load_machine
 from cnc_ptp.parameters.read.named_files import split_files
 from cnc_ptp.parameters.read.parameter_set import Parameter, ParameterSet
@@ -188,9 +188,9 @@ def name_files(nodes: Mapping[str, Mapping[str, List]]) -> None:
 
 def start_lines(sets: Mapping[str, ParameterSet], nodes: Mapping[str, Mapping[str, List]]) -> Iterator[str]:
     """The end of the start-up list: the nodes by their names, how many lists there are, and their files."""
-    of_kind = {kind: [node for node in nodes if sets[node].kind == kind] for kind in ("channel", "axis", "spindle")}
-    for name, kind in UNIT_LISTS.items():
-        yield line_text(name, ", ".join(of_kind[kind]) or "[]")
+    of_kind = {kind: [node for node in nodes if sets[node].kind == kind] for kind in UNIT_LISTS.values()}
+    for name, unit in UNIT_LISTS.items():
+        yield line_text(name, ", ".join(of_kind[unit]) or NO_ITEMS)
     axes = [*of_kind["axis"], *of_kind["spindle"]]
     for kind in (CHANNEL, TOOL, ZERO, CLAMP, AXIS, COMPENSATION):
         owners = axes if kind.node == "axis" else of_kind["channel"]
@@ -198,4 +198,4 @@ def start_lines(sets: Mapping[str, ParameterSet], nodes: Mapping[str, Mapping[st
         if kind.counted_by:
             yield line_text(kind.counted_by, str(len(files)))
         for index, file in files.items():
-            yield line_text(f"{kind.entry}[{index}]", file if " " not in file else f'"{file}"')
+            yield line_text(f"{kind.entry}[{index}]", list_text(file))

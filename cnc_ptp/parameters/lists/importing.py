@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from cnc_ptp.parameters import errors
 from cnc_ptp.parameters.declare import ids
-from cnc_ptp.parameters.errors import ParameterError
+from cnc_ptp.parameters.declare.declarations import AXIS_LETTERS
+from cnc_ptp.parameters.declare.ranges import default_text
+from cnc_ptp.parameters.errors import ParameterError, Place, Problem
 from cnc_ptp.parameters.lists.folder import Folder, ListFile, entry_of, is_count
 from cnc_ptp.parameters.lists.kinds import COMPENSATION, STARTUP, Kind, kind_of
 from cnc_ptp.parameters.lists.lines import Line
@@ -19,23 +21,30 @@ from cnc_ptp.parameters.lists.report import CORRECTED, DEFAULTED, NOTICE, READ, 
 from cnc_ptp.parameters.lists.units import UNIT_LISTS, Unit, Units, find_units, names_in_startup, place_of
 from cnc_ptp.parameters.lists.values import BadLine, split_value, to_yaml
 from cnc_ptp.parameters.loader import load_machine
-from cnc_ptp.parameters.view.machine_view import MachineParameters
+from cnc_ptp.parameters.read.machine_sections import read_parameters
+from cnc_ptp.parameters.read.parameter_set import ParameterSet
 
 
 class Imported(NamedTuple):
-    """A machine file, the machine that it describes, and the report."""
+    """A machine file, the parameters of its nodes by name, and the report."""
 
     text: str
-    machine: MachineParameters
+    sets: Mapping[str, ParameterSet]
     report: Report
 
 
 def import_lists(
-    folder: str, files: Mapping[str, bytes], *, chosen: Mapping[str, Kind] | None = None, strict: bool = False
+    folder: str,
+    files: Mapping[str, bytes],
+    *,
+    chosen: Mapping[str, Kind] | None = None,
+    strict: bool = False,
+    incomplete: bool = False,
 ) -> Imported:
     """The machine of the files of a folder, by name; `chosen`: kinds of lists that their names do not say.
 
-    Raises ListError with all problems; if `strict`, an unknown line is one.
+    Raises ListError with all problems; if `strict`, an unknown line is one. If `incomplete`, what values say against
+    each other is only reported: no node accepts such a machine yet.
     """
     report = Report()
     reader = Folder(folder, files, chosen or {}, report)
@@ -48,11 +57,12 @@ def import_lists(
     writer.machine(reader.startup, folder, units)
     for unit in units:
         writer.unit(unit)
-    machine = checked(writer.text, Origin(place_of(reader.startup, folder)), problems)
-    if problems or machine is None:
+    checker = Checker(writer.text, Origin(place_of(reader.startup, folder)), report, problems)
+    sets = checker.sets(incomplete=incomplete)
+    if problems:
         raise ListError(problems)
-    add_findings(writer.text, machine, units, report)
-    return Imported(writer.text.text, machine, report)
+    add_defaults(sets, units, report)
+    return Imported(writer.text.text, sets, report)
 
 
 def wrong_counts(startup: ListFile | None, units: Units) -> Iterator[ListProblem]:
@@ -72,6 +82,8 @@ class Writer:
         self.text = MachineText()
         self.text.add(HEAD)
         self.first: dict[str, Line] = {}
+        self.letter = ""
+        """Axis type of the unit whose lists are written."""
 
     def machine(self, startup: ListFile | None, folder: str, units: Units) -> None:
         """The section /machine: its units, and what else the start-up list has."""
@@ -85,7 +97,7 @@ class Writer:
 
     def unit(self, unit: Unit) -> None:
         self.text.section(unit.name, Origin(unit.own.place))
-        self.first = {}
+        self.first, self.letter = {}, unit.letter
         for entry in unit.lists:
             self.add_list(unit.name, entry)
 
@@ -115,7 +127,7 @@ class Writer:
         return True
 
     def frame(self, line: Line) -> None:
-        self.report.add(READ, line.place, line.text)
+        self.report.add(READ, line.place, " ".join(line.text.split()))
         if remark := line.rest.partition("#")[2].strip():
             self.text.comment(f"{line.name}: {remark}")
 
@@ -125,7 +137,7 @@ class Writer:
             self.keep(line, "no name of a parameter begins it")
             return
         try:
-            found = resolve(kind.node, line.name)
+            found = self.found(kind, line)
             written = split_value(found.declaration, line.rest)
         except UnknownName as reason:
             self.keep(line, f"{line.name}: {reason}")
@@ -138,6 +150,16 @@ class Writer:
                 self.frame(line)
             else:
                 self.value(line, kind, found, to_yaml(found.declaration, written.value), written.remark)
+
+    def found(self, kind: Kind, line: Line) -> Found:
+        """The parameter of a line. Raises UnknownName, also for one that axes of another type have, and BadIndex."""
+        found = resolve(kind.node, line.name)
+        axes = found.declaration.axes
+        if axes and self.letter and self.letter not in axes:
+            fitting = " and ".join(AXIS_LETTERS[letter] for letter in axes)
+            reason = f"only {fitting} have {found.declaration.id}, this is one of the {AXIS_LETTERS[self.letter]}"
+            raise UnknownName(reason)
+        return found
 
     def value(self, line: Line, kind: Kind, found: Found, value: str, remark: str) -> None:
         name = found.declaration.ros_name(found.indexes)
@@ -152,7 +174,7 @@ class Writer:
         for correction in corrections:
             self.report.add(CORRECTED, line.place, correction)
         if not corrections:
-            self.report.add(READ, line.place, line.text)
+            self.report.add(READ, line.place, " ".join(line.text.split()))
         self.text.value(name, value, remark, Origin(line.value_place, line.text))
 
     def keep(self, line: Line, reason: str) -> None:
@@ -166,25 +188,54 @@ class Writer:
         self.problems.append(ListProblem(error_id, line.value_place, text, line.text))
 
 
-def checked(text: MachineText, nowhere: Origin, problems: list[ListProblem]) -> MachineParameters | None:
-    """The machine of a text; what its reader refuses goes to `problems` with the place in its list."""
-    try:
-        return load_machine(text.text, "machine.yaml")
-    except ParameterError as error:
-        for problem in error.problems:
-            origin = text.origin(problem.place.line, nowhere)
-            problems.append(ListProblem(problem.error_id, origin.place, problem.text, origin.line))
-    return None
+class Checker:
+    """Reads the machine file that was made; what its reader says is told with the places in the lists."""
+
+    def __init__(self, text: MachineText, nowhere: Origin, report: Report, problems: list[ListProblem]) -> None:
+        self.text, self.nowhere, self.report, self.problems = text, nowhere, report, problems
+
+    def sets(self, *, incomplete: bool) -> Mapping[str, ParameterSet]:
+        """The parameters by node; none, with problems, if it is refused."""
+        text, file = self.text.text, "machine.yaml"
+        try:
+            machine = load_machine(text, file)
+        except ParameterError as error:
+            if not incomplete:
+                self.refused(error.problems)
+                return {}
+            return self.incomplete_sets(text, file, error.problems)
+        for notice in machine.warnings:
+            self.report.add(NOTICE, self.origin(notice.place).place, f"{notice.parameter}: {notice.text}")
+        return machine.sets
+
+    def incomplete_sets(self, text: str, file: str, found: Sequence[Problem]) -> Mapping[str, ParameterSet]:
+        """As `sets`; problems of single values stay such, the others become notices."""
+        try:
+            machine, sets, of_values = read_parameters(text, file)
+        except ParameterError as error:
+            self.refused(error.problems)
+            return {}
+        self.refused(of_values)
+        for problem in found:
+            if problem not in of_values:
+                text = f"P-ERR-{problem.error_id} {problem.text}"
+                self.report.add(NOTICE, self.origin(problem.place).place, text)
+        return {"machine": machine, **sets}
+
+    def refused(self, found: Iterable[Problem]) -> None:
+        for problem in found:
+            place, line = self.origin(problem.place)
+            self.problems.append(ListProblem(problem.error_id, place, problem.text, line))
+
+    def origin(self, place: Place) -> Origin:
+        return self.text.origin(place.line, self.nowhere)
 
 
-def add_findings(text: MachineText, machine: MachineParameters, units: Units, report: Report) -> None:
-    """What the machine says of its values, and the defaults of what no list gives."""
-    for notice in machine.warnings:
-        origin = text.origin(notice.place.line, Origin(notice.place))
-        report.add(NOTICE, origin.place, f"{notice.parameter}: {notice.text}")
+def add_defaults(sets: Mapping[str, ParameterSet], units: Units, report: Report) -> None:
+    """Reports what no list gives."""
     for unit in units:
-        for parameter in machine.raw(unit.name).parameters():
-            declaration, indexes, value = parameter
-            if not machine.raw(unit.name).is_given(declaration.id, *indexes):
+        parameters = sets[unit.name]
+        for declaration, indexes, value in parameters.parameters():
+            if not parameters.is_given(declaration.id, *indexes):
                 name = declaration.list_style_name(indexes)
-                report.add(DEFAULTED, unit.own.place, f"{declaration.id} {name} is {value!r}")
+                report.add(DEFAULTED, unit.own.place, f"{declaration.id} {name} {default_text(value)}")

@@ -10,6 +10,7 @@ import re
 from typing import Final
 
 from cnc_ptp.parameters.lists.kinds import KINDS, Kind
+from cnc_ptp.parameters.lists.text import FOREIGN
 
 LIST: Final = "#:"
 UNKNOWN: Final = "#?"
@@ -29,7 +30,7 @@ def read_mark(comment: str) -> tuple[Kind, str] | None:
 
 def is_file_name(name: str) -> bool:
     """Whether a name is that of a file in a folder, and of no other folder."""
-    return _FILE.fullmatch(name) is not None
+    return _FILE.fullmatch(name) is not None and FOREIGN.search(name) is None
 
 
 def comment_line(comment: str) -> str:

@@ -62,7 +62,7 @@ class Report:
             )
             encoding = f", in {entry.encoding}" if entry.encoding else ""
             yield f"{entry.file}: {entry.title} of /{entry.node}{encoding}: {numbers or 'empty'}"
-        for note in sorted(self.notes, key=lambda note: note.place):
+        for note in sorted(self.notes, key=lambda note: (note.place.file, note.kind == DEFAULTED, note.place)):
             if full or note.kind not in IN_FULL_ONLY:
                 yield str(note)
         yield self.summary

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from cnc_ptp.parameters import errors
+from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.declare.declarations import catalogue
 from cnc_ptp.parameters.errors import Place
 from cnc_ptp.parameters.lists.folder import ListFile
@@ -17,9 +18,9 @@ from cnc_ptp.parameters.lists.names import BadIndex, UnknownName, resolve
 from cnc_ptp.parameters.lists.problems import ListProblem
 from cnc_ptp.parameters.lists.values import BadLine, plain_number, split_value, unquoted
 from cnc_ptp.parameters.read.machine_sections import name_trouble
+from cnc_ptp.parameters.read.parameter_set import AXIS_TYPES
 
 _AXIS_NAME = re.compile(r"gruppe\.\d+\.achse\.\d+|spindel\.\d+")
-SPINDLE_TYPE: Final = "ACHSTYP_SPINDEL"
 UNIT_LISTS: Final = {"channels": "channel", "axes": "axis", "spindles": "spindle"}
 """Parameters of the start-up list with the names of nodes, and the kind of these."""
 
@@ -31,6 +32,8 @@ class Unit:
     kind: str
     lists: list[ListFile]
     number: int | None = None
+    letter: str = ""
+    """T, R or S of an axis or spindle."""
     name: str = ""
 
     @property
@@ -74,6 +77,13 @@ def number_in(values: Mapping[str, str], name: str) -> int | None:
     return int(text, 0) if re.fullmatch("0x[0-9a-f]{1,8}|[0-9]{1,9}", text.lower()) else None
 
 
+def axis_letter(values: Mapping[str, str]) -> str:
+    """T, R or S of an axis list; T without a type that can be read."""
+    numbers = {value: AXIS_TYPES[text] for text, value in catalogue().by_id[ids.KENNGR_ACHS_TYP].choices.items()}
+    text = values.get("kenngr.achs_typ", "")
+    return AXIS_TYPES.get(text) or numbers.get(number_in(values, "kenngr.achs_typ"), "T")
+
+
 def find_units(lists: Sequence[ListFile], named: Mapping[str, tuple[str, ...]], problems: list[ListProblem]) -> Units:
     """The units of the lists; `named`: the nodes as the start-up list names them, by kind."""
     units = Units()
@@ -81,8 +91,9 @@ def find_units(lists: Sequence[ListFile], named: Mapping[str, tuple[str, ...]], 
     for entry in lists:
         if entry.kind is AXIS:
             values = values_of("axis", entry.lines)
-            spindle = number_in(values, "kenngr.achs_typ") == 4 or values.get("kenngr.achs_typ") == SPINDLE_TYPE
-            units.axes.append(Unit("spindle" if spindle else "axis", [entry], number_in(values, "kopf.achs_nr")))
+            letter = axis_letter(values)
+            kind = "spindle" if letter == "S" else "axis"
+            units.axes.append(Unit(kind, [entry], number_in(values, "kopf.achs_nr"), letter))
         elif entry.kind is CHANNEL:
             channel_values[entry.name] = values_of("channel", entry.lines)
             units.channels.append(Unit("channel", [entry]))
