@@ -25,7 +25,8 @@ from cnc_ptp.parameters.read.parameter_set import Parameter, ParameterSet
 STARTUP_FILE: Final = "hochlauf.lis"
 NAME_WIDTH: Final = 44
 VALUE_WIDTH: Final = 12
-FILE_PARAMETERS: Final = (ids.WERKZ_DATA, ids.NULLP_DATA, ids.PZV_DATA)
+SAID_BY_FILES: Final = (ids.CHANNELS, ids.AXES, ids.SPINDLES, ids.WERKZ_DATA, ids.NULLP_DATA, ids.PZV_DATA)
+"""What the start-up list says by naming units and files."""
 MAIN: Final = {"machine": STARTUP, "channel": CHANNEL, "axis": AXIS, "spindle": AXIS}
 """The list that every node of a kind has."""
 ORDER: Final = (AXIS, COMPENSATION, CHANNEL, TOOL, ZERO, CLAMP)
@@ -84,14 +85,13 @@ class NodeExport:
 
     def lists(self, section: CommentedSection) -> dict[str, List]:
         """By kind; the values of the files that a machine file names behind its own."""
-        main = self.list_of(MAIN[self.parameters.kind])
+        last = main = self.list_of(MAIN[self.parameters.kind])
         self.implied(main)
         for item in section.items:
             if item.name:
-                self.value(item)
+                last = self.value(item) or last
             else:
                 self.comment(item)
-        last = self.current or next(reversed(self.written.values()))
         last.lines += self.waiting
         self.values_of_files({item.name for item in section.items})
         for entry in self.written.values():
@@ -131,19 +131,19 @@ class NodeExport:
         self.require_readable(line, item)
         (self.current.lines if self.current else self.waiting).append(line)
 
-    def value(self, item: Item) -> None:
+    def value(self, item: Item) -> List | None:
+        """Writes a value and returns its list; None where the start-up list says it in another way."""
         given = self.parameters.find(item.name)
-        if item.name in UNIT_LISTS and self.parameters.kind == "machine":
+        if given.declaration.id in SAID_BY_FILES:
             if item.comment:
                 self.comment(Item(item.line, comment=comment_line(item.comment)))
-            return
-        if given.declaration.id in FILE_PARAMETERS:
-            return
+            return None
         target = self.list_of(kind_of(given.declaration))
         target.lines += self.waiting
         self.waiting = []
         self.require_readable(item.comment, item)
         self.add(target, given, item.raw, item.comment, item.line)
+        return target
 
     def values_of_files(self, own: set[str]) -> None:
         """What the files that the machine file names give; in the order of their indexes."""

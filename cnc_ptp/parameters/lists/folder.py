@@ -183,14 +183,15 @@ class Folder:
         other = best(seen)
         if other is None or other is kind or (seen[kind.name] and other.node == kind.node):
             return False
-        if seen[other.name] <= seen[kind.name]:
+        named = [line for line in lines if line.name and not is_header(line)]
+        if seen[other.name] * 2 <= len(named):
             return False
         line = next(line for line in lines if kinds_of(line) == {other.name})
         word = next(word for word, entry in WORDS.items() if entry is other)
         remedy = f"put it in the start-up list under {other.entry}" if other.entry else "rename it to hochlauf.lis"
         text = (
-            f"this should be {article(kind.title)}, but looks like {article(other.title)}: {seen[other.name]} of "
-            f"{seen.total()} parameters are of that; {remedy} or say --as {name}={word}"
+            f"this should be {article(kind.title)}, but looks like {article(other.title)}: {seen[other.name]} of its "
+            f"{len(named)} lines are of that; {remedy} or say --as {name}={word}"
         )
         self.add(errors.LIST_KIND, line.place, text, line.text)
         return True
@@ -221,16 +222,21 @@ def counts(lines: Iterable[Line]) -> Counter[str]:
     return found
 
 
+def is_header(line: Line) -> bool:
+    """Whether a line has the axis number, which lists of several kinds have."""
+    return line.name.rpartition(".")[2] == "achs_nr"
+
+
 def kinds_of(line: Line) -> set[str]:
-    """The kinds of lists that a line may be of; the header kopf.achs_nr is in several."""
-    if not line.name:
+    """The kinds of lists that a line may be of."""
+    if not line.name or is_header(line):
         return set()
     if entry_of(line) or is_count(line):
         return {STARTUP.name}
     pattern = re.sub(r"\[[^\]]*\]", "[]", line.name)
     matches = [look_up(node, pattern) for node in ("axis", "channel", "machine")]
     found = [match.declaration for match in matches if match.declaration is not None]
-    return {kind_of(entry).name for entry in found if entry.id != ids.KOPF_ACHS_NR}
+    return {kind_of(entry).name for entry in found}
 
 
 def best(seen: Counter[str]) -> Kind | None:

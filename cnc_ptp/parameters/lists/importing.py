@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 from cnc_ptp.parameters import errors
@@ -18,7 +18,7 @@ from cnc_ptp.parameters.lists.marks import list_mark
 from cnc_ptp.parameters.lists.names import BadIndex, Found, UnknownName, resolve
 from cnc_ptp.parameters.lists.problems import ListError, ListProblem
 from cnc_ptp.parameters.lists.report import CORRECTED, DEFAULTED, NOTICE, READ, UNKNOWN, ListCount, Report
-from cnc_ptp.parameters.lists.units import UNIT_LISTS, Unit, Units, find_units, names_in_startup, place_of
+from cnc_ptp.parameters.lists.units import UNIT_LISTS, Unit, Units, find_units, place_of
 from cnc_ptp.parameters.lists.values import BadLine, split_value, to_yaml
 from cnc_ptp.parameters.loader import load_machine
 from cnc_ptp.parameters.read.machine_sections import read_parameters
@@ -50,28 +50,18 @@ def import_lists(
     reader = Folder(folder, files, chosen or {}, report)
     lists = reader.read()
     problems = reader.problems
-    named = {kind: names for kind, _, names in names_in_startup(reader.startup)}
-    units = find_units(lists, named, problems)
-    problems += wrong_counts(reader.startup, units)
+    units = find_units(lists, reader.startup, problems)
+    alone = bool(problems)
     writer = Writer(report, problems, strict)
     writer.machine(reader.startup, folder, units)
     for unit in units:
         writer.unit(unit)
     checker = Checker(writer.text, Origin(place_of(reader.startup, folder)), report, problems)
-    sets = checker.sets(incomplete=incomplete)
+    sets = checker.sets(alone=alone, incomplete=incomplete)
     if problems:
         raise ListError(problems)
     add_defaults(sets, units, report)
     return Imported(writer.text.text, sets, report)
-
-
-def wrong_counts(startup: ListFile | None, units: Units) -> Iterator[ListProblem]:
-    """Nodes that the start-up list names, against the lists."""
-    for kind, line, names in names_in_startup(startup):
-        number = len(units.of(kind))
-        if len(names) != number:
-            text = f"{line.name} names {len(names)}, the folder has the lists of {number}; name each of them, or none"
-            yield ListProblem(errors.COUNT, line.value_place, text, line.text)
 
 
 class Writer:
@@ -142,7 +132,7 @@ class Writer:
         except UnknownName as reason:
             self.keep(line, f"{line.name}: {reason}")
         except BadIndex as reason:
-            self.problem(errors.INDEX, line, f"{line.name}: {reason}")
+            self.problems.append(ListProblem(errors.INDEX, line.place, f"{line.name}: {reason}", line.text))
         except BadLine as reason:
             self.problem(errors.LIST_LINE, line, f"{line.name}: {reason}")
         else:
@@ -180,7 +170,7 @@ class Writer:
     def keep(self, line: Line, reason: str) -> None:
         """A line that nothing reads; an export writes it again."""
         if self.strict:
-            self.problem(errors.UNKNOWN_NAME, line, reason)
+            self.problems.append(ListProblem(errors.UNKNOWN_NAME, line.place, reason, line.text))
         self.report.add(UNKNOWN, line.place, f"{reason}; kept")
         self.text.unknown(line.kept)
 
@@ -194,13 +184,16 @@ class Checker:
     def __init__(self, text: MachineText, nowhere: Origin, report: Report, problems: list[ListProblem]) -> None:
         self.text, self.nowhere, self.report, self.problems = text, nowhere, report, problems
 
-    def sets(self, *, incomplete: bool) -> Mapping[str, ParameterSet]:
-        """The parameters by node; none, with problems, if it is refused."""
+    def sets(self, *, alone: bool, incomplete: bool) -> Mapping[str, ParameterSet]:
+        """The parameters by node; none, with problems, if it is refused.
+
+        If a list is missing already (`alone`), only values by themselves are checked; the others would say so again.
+        """
         text, file = self.text.text, "machine.yaml"
         try:
             machine = load_machine(text, file)
         except ParameterError as error:
-            if not incomplete:
+            if not (incomplete or alone):
                 self.refused(error.problems)
                 return {}
             return self.incomplete_sets(text, file, error.problems)
@@ -218,8 +211,7 @@ class Checker:
         self.refused(of_values)
         for problem in found:
             if problem not in of_values:
-                text = f"P-ERR-{problem.error_id} {problem.text}"
-                self.report.add(NOTICE, self.origin(problem.place).place, text)
+                self.report.add(NOTICE, self.origin(problem.place).place, f"P-ERR-{problem.error_id} {problem.text}")
         return {"machine": machine, **sets}
 
     def refused(self, found: Iterable[Problem]) -> None:

@@ -95,8 +95,6 @@ def look_up(node: str, pattern: str) -> Match:
     old = "old spelling" if spelled != plain else ""
     if found := names.whole.get(spelled):
         return _found(found, now, old)
-    if found := names.misprints.get(plain):
-        return _found(found, tuple(found.name.split(".")), "misprint of a manual")
     ends = names.ends.get(spelled, ())
     if len(ends) == 1:
         return _found(ends[0], now, ", ".join(part for part in (old, "its prefix was missing") if part))
@@ -141,24 +139,21 @@ class Names(NamedTuple):
 
     whole: Mapping[str, Declaration]
     ends: Mapping[str, tuple[Declaration, ...]]
-    misprints: Mapping[str, Declaration]
 
 
 @cache
 def known_names(node: str) -> Names:
     whole: dict[str, Declaration] = {}
     ends: dict[str, tuple[Declaration, ...]] = {}
-    misprints: dict[str, Declaration] = {}
     for kind in ("axis", "spindle") if node == "axis" else (node,):
         for declaration in catalogue().of_node(kind):
             bare = declaration.key.replace(".*", "")
             if bare in whole:
                 continue
             whole[bare] = declaration
-            misprints |= dict.fromkeys(declaration.misprints, declaration)
             for end in ends_of(bare):
                 ends[end] = (*ends.get(end, ()), declaration)
-    return Names(whole, ends, misprints)
+    return Names(whole, ends)
 
 
 def ends_of(name: str) -> Iterator[str]:

@@ -19,6 +19,7 @@ from cnc_ptp.parameters.lists.problems import ListProblem
 from cnc_ptp.parameters.lists.values import BadLine, plain_number, split_value, unquoted
 from cnc_ptp.parameters.read.machine_sections import name_trouble
 from cnc_ptp.parameters.read.parameter_set import AXIS_TYPES
+from cnc_ptp.parameters.read.values import shown
 
 _AXIS_NAME = re.compile(r"gruppe\.\d+\.achse\.\d+|spindel\.\d+")
 UNIT_LISTS: Final = {"channels": "channel", "axes": "axis", "spindles": "spindle"}
@@ -84,8 +85,8 @@ def axis_letter(values: Mapping[str, str]) -> str:
     return AXIS_TYPES.get(text) or numbers.get(number_in(values, "kenngr.achs_typ"), "T")
 
 
-def find_units(lists: Sequence[ListFile], named: Mapping[str, tuple[str, ...]], problems: list[ListProblem]) -> Units:
-    """The units of the lists; `named`: the nodes as the start-up list names them, by kind."""
+def find_units(lists: Sequence[ListFile], startup: ListFile | None, problems: list[ListProblem]) -> Units:
+    """The units of the lists, with the names that the start-up list gives."""
     units = Units()
     channel_values = {}
     for entry in lists:
@@ -99,7 +100,7 @@ def find_units(lists: Sequence[ListFile], named: Mapping[str, tuple[str, ...]], 
             units.channels.append(Unit("channel", [entry]))
     if any(unit.own.number is None for unit in units.axes):
         units.axes.sort(key=lambda unit: (unit.number is None, unit.number or 0))
-    name_units(units, named, axis_names(channel_values.values()), problems)
+    name_units(units, startup, axis_names(channel_values.values()), problems)
     for entry in lists:
         if entry.kind not in (AXIS, CHANNEL):
             add_to_unit(entry, units.axes if entry.kind is COMPENSATION else units.channels, problems)
@@ -120,14 +121,21 @@ def axis_names(channels: Iterable[Mapping[str, str]]) -> dict[int, str]:
 
 
 def name_units(
-    units: Units, named: Mapping[str, tuple[str, ...]], by_number: Mapping[int, str], problems: list[ListProblem]
+    units: Units, startup: ListFile | None, by_number: Mapping[int, str], problems: list[ListProblem]
 ) -> None:
     """Gives each unit its name as a node: from the start-up list, else from its file, its channel, its number."""
     taken: dict[str, str] = {}
-    for kind in ("channel", "axis", "spindle"):
+    for kind, line, names in names_in_startup(startup):
         of_kind = units.of(kind)
-        if len(names := named.get(kind, ())) == len(of_kind):
-            for unit, name in zip(of_kind, names, strict=True):
+        if len(names) != len(of_kind):
+            text = f"{line.name} names {len(names)}, the folder has the lists of {len(of_kind)}; name each, or none"
+            problems.append(ListProblem(errors.COUNT, line.value_place, text, line.text))
+            continue
+        for unit, name in zip(of_kind, names, strict=True):
+            if trouble := name_trouble(name, taken):
+                text = f"{line.name}: {shown(name)} {trouble}; write another name"
+                problems.append(ListProblem(errors.UNIT_NAME, line.value_place, text, line.text))
+            else:
                 unit.name = name
                 taken[name] = kind
     for unit in units:
