@@ -11,6 +11,7 @@ from lists_support import SMALL, as_bytes, imported, values
 from machine_support import ROOT, MachineBench
 from replay_support import bits
 
+from bench.lists import lists_of
 from cnc_ptp.parameters import MachineParameters, ParameterError, load_machine, machine_text, read_machine
 from cnc_ptp.parameters.declare.declarations import Declaration, catalogue
 from cnc_ptp.parameters.lists.exporting import export_lists
@@ -257,5 +258,18 @@ def test_the_mill_of_lists_runs_as_the_mill(tmp_path: Path) -> None:
     path.write_text(import_lists("examples/lists", files, strict=True).text, encoding="utf-8")
     program = (ROOT / "examples" / "bracket.nc").read_text(encoding="utf-8")
     machines = (read_machine(path), read_machine(ROOT / "config" / "mill.yaml"))
-    of_lists, of_file = (bits(MachineBench(program, machine=machine).run()) for machine in machines)
+    of_lists, of_file = (bits(MachineBench(program, machine=machine).run(4.0)) for machine in machines)
     assert of_lists == of_file
+
+
+def test_a_large_machine_comes_back() -> None:
+    files = lists_of(32, 16)
+    first = import_lists("f", files, strict=True)
+    assert len(first.sets) == 1 + 1 + 32 + 16
+    lists = export_lists(first.text, "m.yaml")
+    again = imported(lists, strict=True)
+    assert all_values(again) == all_values(first)
+    assert len(first.report.of("read")) == sum(line.count(b"\n") for line in files.values()) - 48
+    assert {name: text.encode() for name, text in lists.items() if name.startswith("achs_mds")} == {
+        name: text for name, text in files.items() if name.startswith("achs_mds")
+    }
