@@ -19,6 +19,7 @@ from cnc_ptp.parameters.lists.importing import import_lists
 from cnc_ptp.parameters.lists.kinds import WORDS, Kind
 from cnc_ptp.parameters.lists.problems import NOTHING_WRITTEN, ListError, ListProblem
 from cnc_ptp.parameters.lists.report import Report
+from cnc_ptp.parameters.lists.text import FOREIGN
 
 LARGEST_FILE = 16_000_000
 """Bytes of a file that may be a list."""
@@ -58,7 +59,7 @@ def full_report(report: Report) -> str:
 
 
 def read_folder(folder: Path) -> dict[str, bytes]:
-    """The files of a folder by name. Raises ListError 25040 for what is no folder, 25017 for a file."""
+    """The files of a folder by name. Raises ListError 25040 for what is no folder and for names, 25017 for a file."""
     problems: list[ListProblem] = []
     files: dict[str, bytes] = {}
     try:
@@ -67,6 +68,11 @@ def read_folder(folder: Path) -> dict[str, bytes]:
         text = f"the folder of lists cannot be read, {error.strerror}; name a folder with files *.lis"
         raise ListError([ListProblem(errors.LIST_FOLDER, Place(str(folder), 1, 1), text)]) from None
     for path in found:
+        if FOREIGN.search(path.name):
+            if path.suffix.lower() == SUFFIX:
+                text = f"{path.name!a} has characters that no list can hold in its name; rename it"
+                problems.append(ListProblem(errors.LIST_FOLDER, Place(str(folder), 1, 1), text))
+            continue
         try:
             if path.stat().st_size > LARGEST_FILE:
                 raise OSError(0, f"it is larger than {LARGEST_FILE // 1_000_000} MB")

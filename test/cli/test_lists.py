@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -105,6 +106,14 @@ def test_a_folder_that_is_none(tmp_path: Path) -> None:
         text = f"{folder}:1:1: the folder of lists cannot be read, {reason}; name a folder with files *.lis"
         assert (done.exit_code, done.output) == (2, f"P-ERR-25040 {text}{END}")
     assert entries(tmp_path) == []
+
+
+def test_names_of_files_that_cannot_be_written(small: Path, tmp_path: Path) -> None:
+    for name in (b"achs_mds_\xff.lis", b"other\n.txt"):
+        Path(os.fsdecode(os.fsencode(small) + b"/" + name)).write_bytes(b"")
+    done = call("lists", "import", small, "-o", tmp_path / "m.yaml")
+    text = "'achs_mds_\\udcff.lis' has characters that no list can hold in its name; rename it"
+    assert done.output == f"P-ERR-25040 {small}:1:1: {text}{END}"
 
 
 def test_a_file_that_is_too_large(small: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -121,6 +121,11 @@ def test_sections_that_are_not_ended_as_they_begin() -> None:
     text = "`end` of vorsteuer, but section getriebe[0] of line 2 is open; end that first"
     assert second == f"P-ERR-25043 f/achs_mds_x.lis:3:1: {text}, in 'end vorsteuer'{END}"
     assert "2:1: the section has no end;" in axis_refusal("beg")
+    deep = axis_refusal(*["beg"] * 21, *["end"] * 21)
+    assert deep == (
+        "P-ERR-25043 f/achs_mds_x.lis:22:1: sections are nested deeper than 20 levels; write whole names, in "
+        f"'beg'{END}"
+    )
 
 
 def test_characters_that_no_list_has() -> None:
@@ -235,14 +240,16 @@ def test_an_option_that_a_list_contradicts() -> None:
 
 
 def test_a_folder_without_lists() -> None:
-    text = "no list is here (a file *.lis); name the folder with the lists"
-    assert refusal({"readme.txt": ""}) == f"P-ERR-25040 f:1:1: {text}{END}"
+    said = refusal({"readme.txt": ""})
+    assert said == f"P-ERR-25040 f:1:1: no list is here (a file *.lis); name the folder with the lists{END}"
 
 
 def test_two_start_up_lists() -> None:
     said = refusal({**SMALL, "hochlauf.lis": "", "startup.lis": ""})
-    text = "hochlauf.lis is a start-up list, too; a folder has one, delete or rename the other"
-    assert said == f"P-ERR-25041 f/startup.lis:1:1: {text}{END}"
+    assert said == (
+        "P-ERR-25041 f/startup.lis:1:1: hochlauf.lis is a start-up list, too; a folder has one, delete or rename the "
+        f"other{END}"
+    )
 
 
 def test_a_list_whose_axis_or_channel_is_unknown() -> None:

@@ -179,7 +179,7 @@ class Writer:
 
 
 class Checker:
-    """Reads the machine file that was made; what its reader says is told with the places in the lists."""
+    """Reads the machine file that was made; what its reader says gets the places in the lists."""
 
     def __init__(self, text: MachineText, nowhere: Origin, report: Report, problems: list[ListProblem]) -> None:
         self.text, self.nowhere, self.report, self.problems = text, nowhere, report, problems
@@ -187,7 +187,7 @@ class Checker:
     def sets(self, *, alone: bool, incomplete: bool) -> Mapping[str, ParameterSet]:
         """The parameters by node; none, with problems, if it is refused.
 
-        If a list is missing already (`alone`), only values by themselves are checked; the others would say so again.
+        If a list is missing already (`alone`), only single values are checked; the other checks would say so again.
         """
         text, file = self.text.text, "machine.yaml"
         try:

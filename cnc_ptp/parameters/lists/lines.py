@@ -20,6 +20,8 @@ _SECTION: Final = re.compile(rf"(beg|begin|end)(?:\s+({_WORD}(?:\.{_WORD})*))?\s
 _COMMENT: Final = re.compile(r"[#(;]")
 _ORNAMENT: Final = re.compile(r"[:.*=_+/<>~\-\s]+")
 
+MAX_DEPTH: Final = 20
+
 
 class Line(NamedTuple):
     """One line. A comment has no `name`; neither has one that is not understood, which has a `rest`."""
@@ -83,7 +85,9 @@ class LineReader:
         """Begins or ends a section."""
         name = found[2] or ""
         if found[1].lower() != "end":
-            self.sections.append((name, place))
+            if len(self.sections) == MAX_DEPTH:
+                self.add(place, f"sections are nested deeper than {MAX_DEPTH} levels; write whole names", text)
+            self.sections.append((name if len(self.sections) < MAX_DEPTH else "", place))
         elif not self.sections:
             self.add(place, "`end` without `beg`; delete it, or write `beg NAME` before the first line", text)
         elif name and name != self.sections[-1][0]:

@@ -36,7 +36,7 @@ class Match(NamedTuple):
 
     declaration: Declaration | None
     reason: str
-    """Why the name is corrected, or unknown."""
+    """Why the name is corrected, or unknown; empty if no list has it, or not of this kind of nodes."""
     words: tuple[str, ...] = ()
     """The parts of the name in the spelling of the declarations."""
 
@@ -47,7 +47,7 @@ def resolve(node: str, name: str) -> Found:
     match = look_up(node, _INDEX.sub("[]", name) if indexes else name)
     declaration = match.declaration
     if declaration is None:
-        raise UnknownName(match.reason)
+        raise UnknownName(match.reason or unknown(node, ".".join(word.partition("[")[0] for word in match.words)))
     numbers, filled = read_indexes(declaration, match.words, indexes)
     meant = declaration.list_style_name(numbers)
     reasons = ", ".join(reason for reason in (match.reason, filled) if reason)
@@ -102,7 +102,7 @@ def look_up(node: str, pattern: str) -> Match:
         return Match(None, f"it may be {' or '.join(entry.name for entry in ends[:4])}; write the whole name")
     if found := names.whole.get(spelled.lower()) or names.whole.get(plain.lower()):
         return _found(found, tuple(word.lower() for word in now), "names are in small letters")
-    return Match(None, unknown(node, spelled))
+    return Match(None, "", now)
 
 
 def _found(declaration: Declaration, words: tuple[str, ...], reason: str) -> Match:
@@ -120,6 +120,7 @@ def _split(word: str) -> tuple[str, str]:
     return bare, bracket + rest
 
 
+@cache
 def unknown(node: str, plain: str) -> str:
     """That no list has the name: the nodes that do, or the nearest names."""
     others = [kind for kind in ("axis", "channel", "machine") if kind != node and plain in known_names(kind).whole]
@@ -130,7 +131,6 @@ def unknown(node: str, plain: str) -> str:
     last = {entry.name.rpartition(".")[2].partition("[")[0]: entry for entry in names.whole.values()}
     close = [names.whole[name] for name in nearest(plain, names.whole, cutoff=0.85)]
     close = close or [last[name] for name in nearest(plain.rpartition(".")[2], last, cutoff=0.75)]
-    close = close or [names.whole[name] for name in nearest(plain, names.whole)]
     return f"no list has it{did_you_mean([f'{entry.name} ({entry.id})' for entry in close])}"
 
 
