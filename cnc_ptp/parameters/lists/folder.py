@@ -189,8 +189,9 @@ class Folder:
         line = next(line for line in lines if kinds_of(line) == {other.name})
         word = next(word for word, entry in WORDS.items() if entry is other)
         remedy = f"put it in the start-up list under {other.entry}" if other.entry else "rename it to hochlauf.lis"
+        wanted, found = article(kind.title), article(other.title)
         text = (
-            f"this should be {article(kind.title)}, but looks like {article(other.title)}: {seen[other.name]} of its "
+            f"this should be {wanted}, but looks like {found}: {seen[other.name]} of its "
             f"{len(named)} lines are of that; {remedy} or say --as {name}={word}"
         )
         self.add(errors.LIST_KIND, line.place, text, line.text)
