@@ -128,6 +128,25 @@ def test_what_the_machine_says_of_a_value_has_its_line() -> None:
     assert notes(result, "notice") == [f"f/achs_kw_x.lis:1:27: notice: {text}"]
 
 
+@pytest.mark.parametrize(
+    ("written", "said"),
+    [
+        ("MOS 0x00000001", ""),
+        ("0x00000001 MOS", ""),
+        ("PLC_INFO | MVS_SVS 0x00020002 # both", ""),
+        ("MOS 0x00000002", "the remark says MVS_SVS, the value is MOS; the value counts"),
+        ("0x20002 MVS_SVS", "the remark says MVS_SVS, the value is 0x20002; the value counts"),
+        ("MOS 5 of them", ""),
+        ("MOS (no PLC)", ""),
+    ],
+)
+def test_a_remark_that_says_another_constant(written: str, said: str) -> None:
+    content = f"spindel[0].s_synch {written}\n"
+    result = imported({"sda_mds_channel.lis": content}, incomplete=True)
+    found = [note for note in notes(result, "notice") if "remark" in note]
+    assert found == ([f"f/sda_mds_channel.lis:1:20: notice: spindel[0].s_synch: {said}"] if said else [])
+
+
 def test_the_text_is_a_machine_file() -> None:
     result = imported()
     machine = load_machine(result.text, "m.yaml")

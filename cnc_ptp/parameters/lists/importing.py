@@ -19,7 +19,7 @@ from cnc_ptp.parameters.lists.names import BadIndex, Found, UnknownName, resolve
 from cnc_ptp.parameters.lists.problems import ListError, ListProblem
 from cnc_ptp.parameters.lists.report import CORRECTED, DEFAULTED, NOTICE, READ, UNKNOWN, ListCount, Report
 from cnc_ptp.parameters.lists.units import UNIT_LISTS, Unit, Units, find_units, place_of
-from cnc_ptp.parameters.lists.values import BadLine, split_value, to_yaml
+from cnc_ptp.parameters.lists.values import BadLine, said_otherwise, split_value, to_yaml
 from cnc_ptp.parameters.loader import load_machine
 from cnc_ptp.parameters.read.machine_sections import read_parameters
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
@@ -139,6 +139,9 @@ class Writer:
             if kind is COMPENSATION and found.declaration.id == ids.KOPF_ACHS_NR:
                 self.frame(line)
             else:
+                if said := said_otherwise(found.declaration, written):
+                    text = f"the remark says {said}, the value is {written.value}; the value counts"
+                    self.report.add(NOTICE, line.value_place, f"{line.name}: {text}")
                 self.value(line, kind, found, to_yaml(found.declaration, written.value), written.remark)
 
     def found(self, kind: Kind, line: Line) -> Found:

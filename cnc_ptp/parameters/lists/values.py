@@ -9,6 +9,7 @@ from cnc_ptp.parameters.declare.declarations import Declaration, ParameterValue
 from cnc_ptp.parameters.lists.lines import comment_text
 from cnc_ptp.parameters.lists.text import FOREIGN
 from cnc_ptp.parameters.read.source import BOOLEANS, INTEGER, NULLS, NUMBER
+from cnc_ptp.parameters.read.values import BadValue, constants
 
 _QUOTED: Final = r'"(?:[^"]|"")*"'
 _END: Final = r"(?=\s|#|$)"
@@ -53,6 +54,21 @@ def split_value(declaration: Declaration, rest: str) -> Written:
 def has_flags(declaration: Declaration) -> bool:
     """Whether constants may be joined."""
     return declaration.flags or bool(declaration.names)
+
+
+def said_otherwise(declaration: Declaration, written: Written) -> str:
+    """What the remark says of a constant where value and remark have it as number and as name: MOS 0x00000001.
+
+    Empty if both mean the same, or the remark is another one.
+    """
+    remark = _FLAGS.match(written.remark)
+    if not declaration.choices or declaration.type != "string" or remark is None:
+        return ""
+    try:
+        value, said = (constants(declaration, unquoted(text)) for text in (written.value, remark[1]))
+    except BadValue:
+        return ""
+    return said if said != value else ""
 
 
 def unquoted(text: str) -> str:
