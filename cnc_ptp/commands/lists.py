@@ -162,18 +162,21 @@ def require_no_others(folder: Path, lists: Mapping[str, str]) -> None:
 
 
 def write_folder(folder: Path, lists: Mapping[str, str]) -> None:
-    """Writes all lists beside the folder first. Raises CncError 25045."""
-    temporary = ""
+    """Writes all lists beside the folder first; a new one appears with all of them. Raises CncError 25045."""
+    temporary, effect = "", NOTHING_WRITTEN
     try:
         temporary = tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.absolute().parent)
         for name, text in lists.items():
             (Path(temporary) / name).write_text(text, encoding="utf-8", newline="\n")
-        folder.mkdir(exist_ok=True)
+        if not folder.exists() or not any(folder.iterdir()):
+            os.chmod(temporary, 0o777 & ~umask())
+            Path(temporary).replace(folder)
+            return
+        effect = "the folder may hold a part of the lists"
         for name in lists:
             (Path(temporary) / name).replace(folder / name)
     except OSError as error:
-        text = f"{folder} cannot be written: {error.strerror}"
-        raise CncError(errors.LIST_OUTPUT, text, "the folder may hold a part of the lists") from None
+        raise CncError(errors.LIST_OUTPUT, f"{folder} cannot be written: {error.strerror}", effect) from None
     finally:
         if temporary:
             shutil.rmtree(temporary, ignore_errors=True)

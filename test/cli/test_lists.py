@@ -188,6 +188,11 @@ def test_a_disk_that_does_not_take_it(small: Path, tmp_path: Path, monkeypatch: 
     done = call("lists", "import", small, "-o", tmp_path / "m.yaml")
     assert done.output == f"P-ERR-25045 {tmp_path}/m.yaml cannot be written: No space left on device{END}"
     done = call("lists", "export", MILL, "-o", tmp_path / "lists")
-    text = f"{tmp_path}/lists cannot be written: No space left on device; the folder may hold a part of the lists"
+    assert done.output == f"P-ERR-25045 {tmp_path}/lists cannot be written: No space left on device{END}"
+    assert entries(tmp_path) == ["small"]
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "notes.txt").touch()
+    done = call("lists", "export", MILL, "-o", tmp_path / "other", "--force")
+    text = f"{tmp_path}/other cannot be written: No space left on device; the folder may hold a part of the lists"
     assert done.output == f"P-ERR-25045 {text}\n"
-    assert entries(tmp_path) == ["lists", "small"]
+    assert entries(tmp_path) == ["other", "small"]

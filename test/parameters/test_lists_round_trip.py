@@ -145,6 +145,37 @@ def test_files_keep_their_names_unless_two_have_the_same() -> None:
     }  # fmt: skip
 
 
+def test_offsets_and_tools_of_other_files_become_lists(tmp_path: Path) -> None:
+    channel = {
+        "gruppe.0.achse.0.log_achs_nr": 1,
+        "nullp_data": "zero.yaml",
+        "pzv_data": "clamp.yaml",
+        "werkz_data": "t.yaml",
+    }
+    machine = tmp_path / "m.yaml"
+    lines = "".join(f"    {name}: {value}  # {name}\n" for name, value in channel.items())
+    machine.write_text("/machine: {ros__parameters: {channels: [c], axes: [x]}}\n/c:\n  ros__parameters:\n" + lines)
+    (tmp_path / "zero.yaml").write_text(
+        "G54: {name: left vice, X: 12.5}\nG159=7: {X: -1, inactive: [X]}\ndefault: G54\n"
+    )
+    (tmp_path / "clamp.yaml").write_text("3: {X: 0.25}\n")
+    (tmp_path / "t.yaml").write_text("5: {name: drill, type: drill, length: 40, offsets: {X: 1}}\n")
+    text = machine_text(machine)
+    lists = export_lists(text, str(machine))
+    zero = [" ".join(line.split()) for line in lists["nullp_data_c.lis"].splitlines()]
+    assert zero == [
+        "default_index 1",
+        'np_grp[1].bezeichnung "left vice"',
+        "np_grp[1].achse[0].versch 125000",
+        "np_grp[7].achse[0].versch -10000",
+        "np_grp[7].achse[0].inaktiv 1",
+    ]
+    assert "pzv_grp[3].achse[0].versatz 2500" in " ".join(lists["pzv_data_c.lis"].split())
+    assert "wz[5].laenge 400000" in " ".join(lists["werkz_data_c.lis"].split())
+    assert {"# nullp_data", "# pzv_data", "# werkz_data"} <= set(lists["sda_mds_c.lis"].splitlines())
+    assert all_values(imported(lists)) == all_values(load_machine(text, str(machine)))
+
+
 def test_a_node_may_be_called_as_its_user_likes() -> None:
     text = imported().text.replace("/x:", "/xq:").replace("[x]", "[xq]")
     assert list(back(text).sets) == ["machine", "channel", "xq", "s"]
