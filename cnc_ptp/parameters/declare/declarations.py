@@ -33,6 +33,10 @@ NODE_KINDS = ("machine", "channel", "axis", "spindle")
 AXIS_LETTERS = {"T": "linear axes", "R": "rotary axes", "S": "spindles"}
 
 
+LONGEST_INDEX = 1000
+"""Digits; Python reads no integer of more than 4300."""
+
+
 class Limit(NamedTuple):
     """A lower or upper limit: a number, or the id of the parameter that is the limit."""
 
@@ -153,9 +157,9 @@ def dotted(name: str) -> str:
 
 
 def split_indexes(ros_name: str) -> tuple[str, tuple[int, ...]]:
-    """getriebe.0.kv -> (getriebe.*.kv, (0,))."""
+    """getriebe.0.kv -> (getriebe.*.kv, (0,)). More than LONGEST_INDEX digits are no index."""
     segments = ros_name.split(".")
-    numbers = [segment.isdecimal() and segment.isascii() for segment in segments]
+    numbers = [segment.isdecimal() and segment.isascii() and len(segment) <= LONGEST_INDEX for segment in segments]
     key = ".".join("*" if number else segment for segment, number in zip(segments, numbers, strict=True))
     return key, tuple(int(segment) for segment, number in zip(segments, numbers, strict=True) if number)
 
