@@ -18,7 +18,7 @@ PACKAGE = "cnc_ptp"
 ROOT = Path(__file__).parent.resolve()
 COMMANDS = (
     "simulate", "run", "status", "jog", "check", "explain", "format", "replay", "report", "plot", "params", "identify",
-    "circle", "curve",
+    "circle", "curve", "lists",
 )  # fmt: skip
 """Executables of their own. Not `do` and `watch`: one is a word of the shell, the other a program of every Linux."""
 NODES = ("nc_channel", "axis", "spindle", "plc_bridge", "clock", "recorder", "player")
@@ -191,6 +191,7 @@ setup(
         share("config", "config/*.yaml"),
         share("config/tools", "config/tools/*.yaml"),
         share("examples", "examples/*.*"),
+        share("examples/lists", "examples/lists/*.lis"),
     ],
     python_requires=">=3.11,<3.14",
     entry_points={"console_scripts": console_scripts()},

@@ -34,6 +34,7 @@ TOPICS = (
     "client",
     "slaves",
     "spindles",
+    "lists",
 )
 
 

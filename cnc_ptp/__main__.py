@@ -43,6 +43,7 @@ params = _entry("params")
 identify = _entry("identify")
 circle = _entry("circle")
 curve = _entry("curve")
+lists = _entry("lists")
 
 if __name__ == "__main__":
     main()

@@ -28,6 +28,7 @@ MACHINE = click.argument("machine", type=click.Path(dir_okay=False))
 RECORDING = click.argument("recording", type=click.Path(dir_okay=False))
 CLIENTS = ("status", "do", "jog", "watch")
 MCAP_MAGIC = b"\x89MCAP"
+LIST_KINDS = ("axis", "channel", "tool", "zero", "clamp", "compensation", "startup")
 STARTS_NODES = ("run", "replay", *CLIENTS)
 """Commands that take ROS arguments."""
 
@@ -391,6 +392,51 @@ def params_command(words: tuple[str, ...]) -> None:
     from cnc_ptp.commands.look.params import params
 
     sys.exit(params(" ".join(words)))
+
+
+@main.group("lists")
+def lists_group() -> None:
+    """Read and write the vendor's ASCII lists of axes, channels, tools."""
+
+
+def parse_kinds(
+    _context: click.Context, _option: click.Parameter, values: tuple[str, ...]
+) -> tuple[tuple[str, str], ...]:
+    """FILE=KIND, each."""
+    pairs = [(file, kind) for value in values for file, _, kind in [value.rpartition("=")]]
+    for file, kind in pairs:
+        if not file or kind not in LIST_KINDS:
+            raise click.BadParameter(f"FILE=KIND is needed, KIND one of {', '.join(LIST_KINDS)}")
+    return tuple(pairs)
+
+
+@lists_group.command("import")
+@click.argument("folder", type=click.Path())
+@click.option("-o", "--output", required=True, type=click.Path(), help="Machine file to write.")
+@click.option("--report", type=click.Path(), help="File to write what became of each line, and every default.")
+@click.option("--as", "kinds", multiple=True, callback=parse_kinds, metavar="FILE=KIND", help="What a list is.")
+@click.option("--strict", is_flag=True, help="An unknown line is an error.")
+@click.option("--incomplete", is_flag=True, help="Only report what values and lists say against each other.")
+@click.option("--force", is_flag=True, help="Overwrite the output.")
+def lists_import_command(**options: Any) -> None:
+    """Make a machine file of the lists in FOLDER.
+
+    Prints what was corrected and what is unknown; unknown lines and comments are kept for an export.
+    """
+    from cnc_ptp.commands.lists import import_folder
+
+    sys.exit(import_folder(**options))
+
+
+@lists_group.command("export")
+@MACHINE
+@click.option("-o", "--output", required=True, type=click.Path(), metavar="FOLDER", help="Folder to write.")
+@click.option("--force", is_flag=True, help="Replace the lists in a folder that is there.")
+def lists_export_command(**options: Any) -> None:
+    """Write a machine file as lists, one file for each axis, channel and table."""
+    from cnc_ptp.commands.lists import export_folder
+
+    sys.exit(export_folder(**options))
 
 
 def identify_options(function: Callable[..., Any]) -> Callable[..., Any]:

@@ -25,6 +25,13 @@ UNREADABLE = 25017  # the file cannot be read
 UNKNOWN_PARAMETER = 25018  # looked up in the reference
 DENOMINATOR = 25019  # a denominator is zero
 TELEGRAM = 25020  # objects of a telegram, drive type and operation mode
+LIST_FOLDER = 25040  # a folder of lists that is none, or has no list
+LIST_KIND = 25041  # a list of the wrong kind, or one that cannot be told
+LIST_TEXT = 25042  # encoding or characters of a list
+LIST_LINE = 25043  # the form of a line of a list
+LIST_UNIT = 25044  # the axis or channel that a list is for
+LIST_OUTPUT = 25045  # the result exists already or cannot be written
+LIST_VALUE = 25046  # a value or comment that a list cannot hold
 
 EFFECT = "the node does not start"
 

@@ -10,6 +10,7 @@ from bench import (
     control,
     graph,
     interpreter,
+    lists,
     lookahead,
     motion,
     offline,
@@ -30,7 +31,7 @@ SMALLEST = Effort(runs=1, size=0.002, graph_seconds=1.0)
 
 
 @pytest.mark.parametrize(
-    "topic", [interpreter, motion, control, smoothing, lookahead, streaming, recording, offline, spindles]
+    "topic", [interpreter, motion, control, smoothing, lookahead, streaming, recording, offline, spindles, lists]
 )
 def test_topic_yields_figures(topic) -> None:
     said: list[str] = []

@@ -40,6 +40,7 @@ COMMANDS = {
     "identify",
     "circle",
     "curve",
+    "lists",
 }
 NODES = {"nc_channel", "axis", "spindle", "plc_bridge", "clock", "recorder", "player"}
 EXECUTABLES = {"cnc_ptp", *COMMANDS, *NODES}

@@ -168,3 +168,12 @@ def test_synchronisation_constants_are_those_of_the_manual() -> None:
 def test_samples_against_the_manuals(number: str, name: str, data_type: str, default: object) -> None:
     declaration = catalogue().by_id[number]
     assert (declaration.name, declaration.data_type, declaration.default) == (name, data_type, default)
+
+
+def test_aliases_are_spellings_of_parts_of_names():
+    parts = {
+        part.partition("[")[0] for declaration in catalogue().by_id.values() for part in declaration.name.split(".")
+    }
+    assert catalogue().aliases
+    assert {part for part in catalogue().aliases.values() if part not in parts} == set()
+    assert {alias for alias in catalogue().aliases if alias in parts} == set()

@@ -90,6 +90,14 @@ CASES = {
         AXES_ONLY + "/x: {}\nx: {}\n",
         "P-ERR-25002 m.yaml:3:1: section /x is given twice, first in line 2" + END,
     ),
+    "endless index": (
+        AXES_ONLY + f"/x:\n  ros__parameters:\n    ? getriebe.{'9' * 5000}.kv\n    : 1\n",
+        f"P-ERR-25005 m.yaml:5:7: axis /x has no parameter 'getriebe.{'9' * 47}..." + END,
+    ),
+    "duplicate ros__parameters": (
+        AXES_ONLY + "/x:\n  ros__parameters: {kopf.achs_nr: 1}\n  ros__parameters: {kopf.achs_nr: 2}\n",
+        "P-ERR-25002 m.yaml:4:3: /x has ros__parameters twice, first in line 3" + END,
+    ),
     "duplicate key": (
         axis("{kopf: {achs_nr: 1},\n  kopf.achs_nr: 2}"),
         "P-ERR-25002 m.yaml:3:3: /x has kopf.achs_nr twice, first in line 2" + END,

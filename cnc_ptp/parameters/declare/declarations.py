@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -31,6 +31,10 @@ LISTS = ("axis", "channel", "startup", "zero", "clamp", "compensation", "tool", 
 OF_CHANNELS = ("channel", "startup", "zero", "clamp", "tool")
 NODE_KINDS = ("machine", "channel", "axis", "spindle")
 AXIS_LETTERS = {"T": "linear axes", "R": "rotary axes", "S": "spindles"}
+
+
+LONGEST_INDEX = 1000
+"""Digits; Python reads no integer of more than 4300."""
 
 
 class Limit(NamedTuple):
@@ -135,6 +139,8 @@ class Catalogue:
     arrays: Mapping[str, Array]
     by_key: Mapping[str, Mapping[str, Declaration]]
     """Node kind -> key -> declaration."""
+    aliases: Mapping[str, str] = field(default_factory=dict)
+    """Old spellings of a part of a name, which lists may use -> the part in the declarations."""
 
     def of_node(self, node_kind: str) -> Iterator[Declaration]:
         return iter(self.by_key[node_kind].values())
@@ -151,9 +157,9 @@ def dotted(name: str) -> str:
 
 
 def split_indexes(ros_name: str) -> tuple[str, tuple[int, ...]]:
-    """getriebe.0.kv -> (getriebe.*.kv, (0,))."""
+    """getriebe.0.kv -> (getriebe.*.kv, (0,)). More than LONGEST_INDEX digits are no index."""
     segments = ros_name.split(".")
-    numbers = [segment.isdecimal() and segment.isascii() for segment in segments]
+    numbers = [segment.isdecimal() and segment.isascii() and len(segment) <= LONGEST_INDEX for segment in segments]
     key = ".".join("*" if number else segment for segment, number in zip(segments, numbers, strict=True))
     return key, tuple(int(segment) for segment, number in zip(segments, numbers, strict=True) if number)
 
@@ -173,7 +179,8 @@ def make_catalogue(data: Mapping[str, Any]) -> Catalogue:
         for kind in NODE_KINDS:
             if declaration.belongs_to(kind):
                 by_key[kind][declaration.key] = declaration
-    return Catalogue({declaration.id: declaration for declaration in declarations}, arrays, by_key)
+    by_id = {declaration.id: declaration for declaration in declarations}
+    return Catalogue(by_id, arrays, by_key, data.get("aliases", {}))
 
 
 def make_declaration(number: str, entry: Mapping[str, Any]) -> Declaration:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import NamedTuple
 
 from cnc_ptp.parameters import list_units
@@ -123,9 +124,18 @@ class ParameterSet:
 
     def used_indexes(self, array: str) -> list[int]:
         """Elements of an array of which the file gives anything; `array` is spindel, gruppe.0.achse …"""
-        prefix = array + "."
-        rests = (name[len(prefix) :].split(".")[0] for name in (*self.given, *self.invalid) if name.startswith(prefix))
-        return sorted({int(rest) for rest in rests})
+        return self._used.get(array, [])
+
+    @cached_property
+    def _used(self) -> dict[str, list[int]]:
+        """The elements of each array of which the file gives anything."""
+        found: dict[str, set[int]] = {}
+        for name in (*self.given, *self.invalid):
+            segments = name.split(".")
+            for place, segment in enumerate(segments):
+                if segment.isascii() and segment.isdecimal():
+                    found.setdefault(".".join(segments[:place]), set()).add(int(segment))
+        return {array: sorted(indexes) for array, indexes in found.items()}
 
     def parameters(self) -> Iterator[Parameter]:
         """Every parameter that the node has, for each array element in use, in the order of the declarations."""

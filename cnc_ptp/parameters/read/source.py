@@ -122,12 +122,18 @@ class Reader:
                 self.expect_mapping(event, events, f"section /{section.node}")
 
     def read_section(self, section: Section, events: Iterator[Any]) -> None:
+        first = 0
         for key, event in self.pairs(events):
             if key.value != "ros__parameters":
                 text = f"section /{section.node} has {key.value} where ros__parameters is expected"
                 self.add(errors.SYNTAX, key, text)
                 self.skip(event, events)
-            elif isinstance(event, yaml.MappingStartEvent):
+                continue
+            if first:
+                text = f"/{section.node} has ros__parameters twice, first in line {first}"
+                self.add(errors.DUPLICATE_KEY, key, text)
+            first = first or self.place(key).line
+            if isinstance(event, yaml.MappingStartEvent):
                 self.read_parameters(section, events)
             elif not is_null(event):
                 self.expect_mapping(event, events, f"ros__parameters of /{section.node}")

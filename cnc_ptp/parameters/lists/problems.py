@@ -1,0 +1,43 @@
+"""What refuses an import or export of lists: every problem with its line, all of them in one exception."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Final, NamedTuple
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.parameters.errors import Place
+
+NOTHING_WRITTEN: Final = "nothing was written"
+SHOWN: Final = 100
+"""Characters of a line that a message shows."""
+
+
+class ListProblem(NamedTuple):
+    """One thing that is wrong in a list: where, what, and what would mend it; `line` is its text."""
+
+    error_id: int
+    place: Place
+    text: str
+    line: str = ""
+
+    def __str__(self) -> str:
+        line = self.line if len(self.line) <= SHOWN else f"{self.line[: SHOWN - 1]}…"
+        shown = f", in '{line}'" if line else ""
+        return f"{self.place}: {self.text}{shown}; {NOTHING_WRITTEN}"
+
+
+class ListError(CncError):
+    """Lists that are not read, or a machine that is not written as lists; `problems` has all of them in order.
+
+    The message has one line per problem. The error number is that of the first, the following begin with their own.
+    """
+
+    def __init__(self, problems: Iterable[ListProblem]) -> None:
+        self.problems = tuple(sorted(set(problems), key=lambda problem: (problem.place, problem.error_id)))
+        first, *others = self.problems
+        lines = [str(first), *(f"P-ERR-{problem.error_id} {problem}" for problem in others)]
+        super().__init__(first.error_id, "\n".join(lines))
+
+    def __reduce__(self) -> tuple[type[ListError], tuple[tuple[ListProblem, ...]]]:
+        return type(self), (self.problems,)
