@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from math import copysign, sqrt
 from typing import Final
 
-from cnc_ptp.path.shape import AxisState, Bounds, Shape, speed_of
+from cnc_ptp.path.shape import AxisState, Bounds, Shape
 
 FALSE_POSITIONS: Final = 3
 """Steps to the largest speed within a cell; what remains is below 1e-8 of it."""
@@ -48,10 +48,11 @@ class Cubic:
 
         q2 is linear; q1 is a parabola, whose vertex counts if it is between the two.
         """
-        found = []
-        at_begin, at_end = self.shape(begin), self.shape(end)
-        for (_, first0, second0, third), (_, first1, second1, _) in zip(at_begin, at_end, strict=True):
-            first = max(abs(first0), abs(first1))
+        found: list[Bounds] = []
+        for axis in self.start:
+            first0, second0, third = first_at(axis, begin), second_at(axis, begin), axis[3]
+            second1 = second_at(axis, end)
+            first = max(abs(first0), abs(first_at(axis, end)))
             if second0 * second1 < 0.0:
                 first = max(first, abs(first0 - 0.5 * second0 * second0 / third))
             found.append((first, max(abs(second0), abs(second1)), abs(third)))
@@ -80,7 +81,11 @@ class Cubic:
 
     def speed(self, u: float, axes: Sequence[int]) -> float:
         """|dq/du| of the given axes: the path velocity is u' times that."""
-        return speed_of(self.shape(u), axes)
+        square = 0.0
+        for axis in axes:
+            first = first_at(self.start[axis], u)
+            square += first * first
+        return sqrt(square)
 
     def largest_speed(self, begin: float, end: float, axes: Sequence[int]) -> float:
         """Largest |dq/du| of the given axes from u = `begin` to `end`, which are near each other.
@@ -101,5 +106,18 @@ class Cubic:
         return self.speed(low + (high - low) * rising / (rising - falling), axes)
 
     def _slope(self, u: float, axes: Sequence[int]) -> float:
-        shape = self.shape(u)
-        return sum([shape[axis][1] * shape[axis][2] for axis in axes])
+        slope = 0.0
+        for axis in axes:
+            slope += first_at(self.start[axis], u) * second_at(self.start[axis], u)
+        return slope
+
+
+def first_at(axis: Shape, u: float) -> float:
+    """q1 at u of what an axis does from u = 0 on."""
+    _, q1, q2, q3 = axis
+    return q1 + u * (q2 + 0.5 * u * q3)
+
+
+def second_at(axis: Shape, u: float) -> float:
+    """q2 at u."""
+    return axis[2] + u * axis[3]

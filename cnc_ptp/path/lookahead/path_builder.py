@@ -185,7 +185,7 @@ class PathBuilder:
         made = None if contour is None else corner(last.span, motion.span, contour, self._path_axes)
         if made is not None and self._passable(made, motion.kinematics):
             return made, inf
-        limits = narrower(last.axes, motion.axes)
+        limits = last.axes if last.axes is motion.axes else narrower(last.axes, motion.axes)
         square = kink_square(last.span, motion.span, limits, self._cycle_time, motion.kinematics, self.reached)
         if square < inf:
             alone = min(last.span.length, motion.span.length) / (KINK_CYCLES * self._cycle_time)
