@@ -28,10 +28,7 @@ class Cubic:
 
     def shape(self, u: float) -> list[Shape]:
         """q, q1, q2, q3 of each axis at u."""
-        return [
-            (q + u * (q1 + u * (0.5 * q2 + u * (q3 / 6.0))), q1 + u * (q2 + 0.5 * u * q3), q2 + u * q3, q3)
-            for q, q1, q2, q3 in self.start
-        ]
+        return [shape_at(axis, u) for axis in self.start]
 
     def evaluate(self, u: float, v: float, a: float, j: float) -> tuple[AxisState, ...]:
         """State of each axis at u that moves with u' = v, u'' = a, u''' = j.
@@ -39,9 +36,11 @@ class Cubic:
         q' = q1·v, q'' = q1·a + q2·v², q''' = q1·j + 3·q2·v·a + q3·v³.
         """
         square, cross, cube = v * v, 3.0 * v * a, v * v * v
-        return tuple(
-            [(q, q1 * v, q1 * a + q2 * square, q1 * j + q2 * cross + q3 * cube) for q, q1, q2, q3 in self.shape(u)]
-        )
+        states: list[AxisState] = []
+        for axis in self.start:
+            q, q1, q2, q3 = shape_at(axis, u)
+            states.append((q, q1 * v, q1 * a + q2 * square, q1 * j + q2 * cross + q3 * cube))
+        return tuple(states)
 
     def bounds(self, begin: float, end: float) -> list[Bounds]:
         """Largest |q1|, |q2|, |q3| of each axis from u = `begin` to `end`.
@@ -50,9 +49,9 @@ class Cubic:
         """
         found: list[Bounds] = []
         for axis in self.start:
-            first0, second0, third = first_at(axis, begin), second_at(axis, begin), axis[3]
-            second1 = second_at(axis, end)
-            first = max(abs(first0), abs(first_at(axis, end)))
+            _, first0, second0, third = shape_at(axis, begin)
+            _, first1, second1, _ = shape_at(axis, end)
+            first = max(abs(first0), abs(first1))
             if second0 * second1 < 0.0:
                 first = max(first, abs(first0 - 0.5 * second0 * second0 / third))
             found.append((first, max(abs(second0), abs(second1)), abs(third)))
@@ -83,7 +82,7 @@ class Cubic:
         """|dq/du| of the given axes: the path velocity is u' times that."""
         square = 0.0
         for axis in axes:
-            first = first_at(self.start[axis], u)
+            first = shape_at(self.start[axis], u)[1]
             square += first * first
         return sqrt(square)
 
@@ -108,16 +107,12 @@ class Cubic:
     def _slope(self, u: float, axes: Sequence[int]) -> float:
         slope = 0.0
         for axis in axes:
-            slope += first_at(self.start[axis], u) * second_at(self.start[axis], u)
+            _, first, second, _ = shape_at(self.start[axis], u)
+            slope += first * second
         return slope
 
 
-def first_at(axis: Shape, u: float) -> float:
-    """q1 at u of what an axis does from u = 0 on."""
-    _, q1, q2, q3 = axis
-    return q1 + u * (q2 + 0.5 * u * q3)
-
-
-def second_at(axis: Shape, u: float) -> float:
-    """q2 at u."""
-    return axis[2] + u * axis[3]
+def shape_at(axis: Shape, u: float) -> Shape:
+    """q, q1, q2, q3 at u of an axis that has those of `axis` at u = 0."""
+    q, q1, q2, q3 = axis
+    return q + u * (q1 + u * (0.5 * q2 + u * (q3 / 6.0))), q1 + u * (q2 + 0.5 * u * q3), q2 + u * q3, q3

@@ -15,6 +15,8 @@ real run can do, so a share of the bound is never said to be higher than it is.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import ceil
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,17 +24,23 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 STEPS = 4000
 """Of the table of a start from rest."""
-ROUNDING = 1e-9
+CLOSE = 1e-3
+"""Part of the feed that does not count: pieces of a curve have a little more or less of it in u'."""
+FEWEST, SPACING = 8, 0.25
+"""Places on each part of a path, and mm between them."""
 
 
 class PathBound:
-    """Of one path: `u` of places, q1, q2, q3 of the axes there (places, axes), and the places at which it stops."""
+    """Of one path: `u` of places, q1, q2, q3 of its axes there (places, axes), and the places at which it stops.
+
+    feed, velocity   u' of the programmed feed, and of what is permitted at most, at each place
+    """
 
     def __init__(
         self, u: Array, q1: Array, q2: Array, q3: Array, stops: Sequence[float],
         *, feed: float, acceleration: float, jerk: float,
     ) -> None:  # fmt: skip
-        self.u, self.feed = u, feed
+        self.u, self.feed = u, feed / np.linalg.norm(q1, axis=1)
         slope, bend, twist = np.abs(q1), np.abs(q2), np.abs(q3)
         self.curve = self._constant(bend, twist, acceleration, jerk)
         along = ratio(acceleration + bend * (self.curve**2)[:, None], slope)
@@ -55,7 +63,7 @@ class PathBound:
         first = np.searchsorted(number, np.unique(number))
         strongest = zip(np.maximum.reduceat(along, first), np.maximum.reduceat(jerk, first), strict=True)
         return {
-            int(stretch): rest_to_feed(float(a), float(j), self.feed)
+            int(stretch): rest_to_feed(float(a), float(j), float(self.feed.max()))
             for stretch, (a, j) in zip(number[first], strongest, strict=True)
         }
 
@@ -65,7 +73,7 @@ class PathBound:
         last = len(self._stops) - 1
         before, behind = self._stops[np.maximum(number - 1, 0)], self._stops[np.minimum(number, last)]
         way = np.minimum(np.abs(u - before), np.abs(behind - u))
-        found = np.full(len(u), self.feed)
+        found = np.full(len(u), self.feed.max())
         for stretch, start in self._starts.items():
             inside = slice(*np.searchsorted(number, [stretch, stretch + 1]))
             found[inside] = np.interp(way[inside], *start)
@@ -87,7 +95,29 @@ class PathBound:
 
     def free(self, u: Array) -> NDArray[np.bool_]:
         """Where the axes permit the whole feed."""
-        return self.at(u) >= self.feed * (1.0 - ROUNDING)
+        return self.at(u) >= np.interp(u, self.u, self.feed) * (1.0 - CLOSE)
+
+
+def bound_of(parts: Sequence[Any], *, feed: float, acceleration: float, jerk: float) -> PathBound:
+    """Of parts of a path that have a geometry with `shape`, and an `entry` of 0 where the path stops before them."""
+    places: list[float] = []
+    shapes: list[list[tuple[float, float, float]]] = []
+    stops = [0.0]
+    begin = 0.0
+    for part in parts:
+        if part.entry == 0.0:
+            stops.append(begin)
+        count = max(FEWEST, ceil(part.length / SPACING))
+        for number in range(count):
+            u = (number + 0.5) * part.length / count
+            places.append(begin + u)
+            shapes.append([axis[1:] for axis in part.geometry.shape(u)])
+        begin += part.length
+    q = np.array(shapes)
+    return PathBound(
+        np.array(places), q[:, :, 0], q[:, :, 1], q[:, :, 2], [*stops, begin],
+        feed=feed, acceleration=acceleration, jerk=jerk,
+    )  # fmt: skip
 
 
 def ratio(strength: Array, slope: Array) -> Array:
@@ -97,7 +127,7 @@ def ratio(strength: Array, slope: Array) -> Array:
 
 
 def rest_to_feed(acceleration: float, jerk: float, feed: float) -> tuple[Array, Array]:
-    """Way and velocity of the fastest start on a line: jerk up, constant acceleration, jerk down at the feed."""
+    """Way and velocity of the fastest start on a line: jerk up, constant acceleration, jerk down towards the feed."""
     acceleration = min(acceleration, float(np.sqrt(feed * jerk)))
     ramp, constant = acceleration / jerk, feed / acceleration - acceleration / jerk
     t = np.linspace(0.0, 2.0 * ramp + constant, STEPS)
