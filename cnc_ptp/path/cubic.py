@@ -14,6 +14,8 @@ from cnc_ptp.path.shape import AxisState, Bounds, Shape
 
 FALSE_POSITIONS: Final = 3
 """Steps to the largest speed within a cell; what remains is below 1e-8 of it."""
+HALVINGS: Final = 8
+"""Steps before these where it is looked for between places that are further apart."""
 
 
 class Cubic:
@@ -89,12 +91,17 @@ class Cubic:
     def largest_speed(self, begin: float, end: float, axes: Sequence[int]) -> float:
         """Largest |dq/du| of the given axes from u = `begin` to `end`, which are near each other.
 
-        Its square has the slope 2·q1·q2; where that falls through 0, regula falsi finds the place.
+        Its square has the slope 2·q1·q2; where that falls through 0, regula falsi finds the place. That happens in one
+        place at most, so if the signs at both ends do not show it, it is looked for where the slope falls.
         """
+        largest = max(self.speed(begin, axes), self.speed(end, axes))
         low, high = begin, end
         rising, falling = self._slope(low, axes), self._slope(high, axes)
         if rising <= 0.0 or falling >= 0.0:
-            return max(self.speed(begin, axes), self.speed(end, axes))
+            low, high = self._near_maximum(begin, end, axes)
+            if low >= high:
+                return largest
+            rising, falling = self._slope(low, axes), self._slope(high, axes)
         for _ in range(FALSE_POSITIONS):
             place = low + (high - low) * rising / (rising - falling)
             slope = self._slope(place, axes)
@@ -102,7 +109,34 @@ class Cubic:
                 low, rising = place, slope
             else:
                 high, falling = place, slope
-        return self.speed(low + (high - low) * rising / (rising - falling), axes)
+        return max(largest, self.speed(low + (high - low) * rising / (rising - falling), axes))
+
+    def _near_maximum(self, begin: float, end: float, axes: Sequence[int]) -> tuple[float, float]:
+        """Two places between which the slope falls through 0, near each other; no part of u if it nowhere does."""
+        first, last = self._falling_slope(axes)
+        low, high = max(begin, first), min(end, last)
+        if low >= high or self._slope(low, axes) <= 0.0 or self._slope(high, axes) >= 0.0:
+            return 0.0, 0.0
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            if self._slope(middle, axes) > 0.0:
+                low = middle
+            else:
+                high = middle
+        return low, high
+
+    def _falling_slope(self, axes: Sequence[int]) -> tuple[float, float]:
+        """From where to where q1·q2 falls: its derivative, q2² + q1·q3, is a + b·u + c·u² with c = 3/2·q3² >= 0."""
+        a = b = c = 0.0
+        for axis in axes:
+            _, q1, q2, q3 = self.start[axis]
+            a += q2 * q2 + q1 * q3
+            b += 3.0 * q2 * q3
+            c += 1.5 * q3 * q3
+        square = b * b - 4.0 * a * c
+        if square <= 0.0 or c <= 0.0:
+            return 0.0, 0.0
+        return (-b - sqrt(square)) / (2.0 * c), (-b + sqrt(square)) / (2.0 * c)
 
     def _slope(self, u: float, axes: Sequence[int]) -> float:
         slope = 0.0

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -22,7 +24,7 @@ def parts_of(points: list[tuple[float, float, float]], contour_of_short: Contour
     short = Transition(exact=False, contour=contour_of_short, smoothing=Smoothing(PATH_DEV))
     builder, parts = PathBuilder(XYZ, 0.001), []
     builder.begin()
-    for block, (begin, end) in enumerate(zip(points, points[1:], strict=False)):
+    for block, (begin, end) in enumerate(pairwise(points)):
         parts += builder.add(LinkedMotion(Line(begin, end, XYZ), AXES, 100.0, block, short if block else first))
     return parts + builder.finish()
 
