@@ -93,6 +93,18 @@ def stopwatch() -> Iterator[Stopwatch]:
     watch.wall, watch.cpu = time.perf_counter() - wall, time.process_time() - cpu
 
 
+WORK = 500_000
+
+
+def fixed_work() -> float:
+    """CPU s of a piece of work that never changes: what the machine gives in this hour, to compare hours by."""
+    with stopwatch() as watch:
+        value = 0.0
+        for step in range(WORK):
+            value = 0.5 * value + step
+    return watch.cpu
+
+
 def number(value: float) -> str:
     """Three significant digits, without an exponent."""
     if value == 0.0:

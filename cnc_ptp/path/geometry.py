@@ -356,17 +356,19 @@ def _project(slopes: Sequence[float], axes: Sequence[AxisLimits]) -> Limits:
     return Limits(velocity, acceleration, deceleration, jerk)
 
 
-def _combine(feed: float, parts: Sequence[Limits]) -> Limits:
+def _combine(feed: float, parts: list[Limits]) -> Limits:
     """The tightest of all limits, within the feed.
 
     A path on which nothing moves gets the largest limits that planners take.
     """
-    return Limits(
-        min(feed, LARGEST_LIMIT, *(part.velocity for part in parts)),
-        min(LARGEST_LIMIT, *(part.acceleration for part in parts)),
-        min(LARGEST_LIMIT, *(part.deceleration for part in parts)),
-        min(LARGEST_LIMIT, *(part.jerk for part in parts)),
-    )
+    velocity = min(feed, LARGEST_LIMIT)
+    acceleration = deceleration = jerk = LARGEST_LIMIT
+    for part in parts:
+        velocity = min(velocity, part.velocity)
+        acceleration = min(acceleration, part.acceleration)
+        deceleration = min(deceleration, part.deceleration)
+        jerk = min(jerk, part.jerk)
+    return Limits(velocity, acceleration, deceleration, jerk)
 
 
 def _check_feed(feed: float) -> None:

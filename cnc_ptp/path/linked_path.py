@@ -15,7 +15,7 @@ from cnc_ptp.path.interpolator import PathInterpolator
 from cnc_ptp.path.lookahead.look_ahead import LookAhead
 from cnc_ptp.path.lookahead.parts import PathPart
 from cnc_ptp.path.lookahead.path_builder import LinkedMotion, PathBuilder
-from cnc_ptp.path.shape import AxisState, standing, without_jerk
+from cnc_ptp.path.shape import AxisStates, standing, without_jerk
 
 Path = LinearMove | CircularMove
 
@@ -68,9 +68,13 @@ def is_rapid(motion: Path) -> bool:
     return isinstance(motion, LinearMove) and motion.rapid
 
 
-def path_velocity(states: Sequence[AxisState], axes: Sequence[int]) -> float:
+def path_velocity(states: AxisStates, axes: Sequence[int]) -> float:
     """Velocity of the given axes together."""
-    return sqrt(sum([states[axis][1] * states[axis][1] for axis in axes]))
+    square = 0.0
+    for axis in axes:
+        velocity = states[axis][1]
+        square += velocity * velocity
+    return sqrt(square)
 
 
 class LinkedPath(ActiveMotion):

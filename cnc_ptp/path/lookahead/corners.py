@@ -59,8 +59,10 @@ STEPS: Final = 8
 """Newton steps to the largest distance; the first value is at most four times that."""
 
 
-def corner(a: Span, b: Span, contour: Contour, path_axes: Sequence[int]) -> Corner | None:
+def corner(a: Span, b: Span, contour: Contour, path_axes: Sequence[int], most: float = inf) -> Corner | None:
     """What is left of A, the curve, and what is left of B; without a curve where nothing jumps.
+
+    `most`: mm of B that the curve may take.
 
     The first piece belongs to the block of A, the others to that of B. None if there can be no curve: the path reverses
     or rests on one side, a block is too short, the angle is above MAX_ANGLE, or an axis beside those of the path has a
@@ -79,7 +81,7 @@ def corner(a: Span, b: Span, contour: Contour, path_axes: Sequence[int]) -> Corn
         kinks[axis] > 0.0 or jumps[axis] > 0.0 for axis in others
     ):
         return None
-    before, after = distances(a, b, contour, path_axes, end, start)
+    before, after = distances(a, b, contour, path_axes, end, start, most)
     if min(before, after) < LEAST_DISTANCE and contour.mode != POS:
         return None
     left, met = a.end - before, b.begin + after
@@ -179,10 +181,11 @@ def angle_between(end: Sequence[Shape], start: Sequence[Shape], path_axes: Seque
 
 
 def distances(
-    a: Span, b: Span, contour: Contour, path_axes: Sequence[int], end: Sequence[Shape], start: Sequence[Shape]
-) -> tuple[float, float]:
-    """dA and dB. If one of two equal ones has to be shorter, both are."""
-    before, after = room(a, contour), room(b, contour)
+    a: Span, b: Span, contour: Contour, path_axes: Sequence[int],
+    end: Sequence[Shape], start: Sequence[Shape], most: float,
+) -> tuple[float, float]:  # fmt: skip
+    """dA and dB, of which dB is at most `most`. If one of two equal ones has to be shorter, both are."""
+    before, after = room(a, contour), min(room(b, contour), most)
     if contour.mode == POS:
         return min(before, contour.pre_dist), min(after, contour.post_dist)
     parts = EVEN

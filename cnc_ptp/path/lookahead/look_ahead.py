@@ -247,7 +247,7 @@ class LookAhead:
             return True
         return True
 
-    def _rests_at_end(self, stretch: Sequence[PathCell]) -> bool:
+    def _rests_at_end(self, stretch: list[PathCell]) -> bool:
         """A plan from the next knot to the end of the stretch; False if there is none."""
         knot = self._knot()
         if knot is None or self._factor <= AT_REST:
@@ -327,7 +327,7 @@ class LookAhead:
         piece, following = self._profile.piece_and_next(self._time)
         return None if following is None or following.kind != BETWEEN else (piece, following)
 
-    def _from_knot(self, following: PathPiece, cells: Sequence[PathCell]) -> tuple[MovingStart, list[PathCell]]:
+    def _from_knot(self, following: PathPiece, cells: list[PathCell]) -> tuple[MovingStart, list[PathCell]]:
         """The state at the start of a piece, and the cells from there on, of which the first has no length."""
         start = MovingStart(following.u, following.velocity * following.velocity, 2.0 * following.acceleration)
         ahead = [cell for cell in cells if cell.middle > following.u]

@@ -85,7 +85,8 @@ def cell_of(part: PathPart, origin: float, begin: float, end: float) -> PathCell
     bounds = geometry.bounds(begin, end)
     curved = False
     limit = up = down = jerk = LARGEST_LIMIT
-    for (first, second, third), axis in zip(bounds, axes, strict=True):
+    for index, (first, second, third) in enumerate(bounds):
+        axis = axes[index]
         curved = curved or second > 0.0 or third > 0.0
         if first > 0.0:
             limit = min(limit, (axis.velocity / first) ** 2)
@@ -104,7 +105,7 @@ def cell_of(part: PathPart, origin: float, begin: float, end: float) -> PathCell
 
 
 def loads_of(
-    part: PathPart, axes: Sequence[AxisLimits], bounds: Sequence[Bounds], middle: float, half: float
+    part: PathPart, axes: Sequence[AxisLimits], bounds: list[Bounds], middle: float, half: float
 ) -> list[AxisLoad]:
     """For each axis that the path moves in a cell.
 

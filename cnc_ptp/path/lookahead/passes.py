@@ -2,11 +2,13 @@
 
 Both follow the limits of the cells from below. Where these fall, the other pass decides; where they rise again, a pass
 sets out from the lowest point with an acceleration of 0, so that the bottom of a valley is round.
+
+Here and where the plan is checked, lists are declared as such and min and max have two arguments: all of it runs for
+each cell several times, and only these are compiled without calls into Python.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from math import cbrt, sqrt
 
 from cnc_ptp.path.lookahead.path_cell import SMALLEST_SQUARE, PathCell
@@ -19,7 +21,7 @@ def from_rest(first: PathCell, second: PathCell, *, braking: bool) -> float:
     """
     length = first.length
     jerk = 0.5 * bend_at(first, second, 0.0, 1.0, 0.0)
-    square = min(square_from_rest(jerk, length), first.limit, second.limit)
+    square = min(square_from_rest(jerk, length), min(first.limit, second.limit))
     square = min(square, 1.5 * length * permitted(first, second, 0.0, 0.0, braking))
     while square > SMALLEST_SQUARE and 3.0 * length * permitted(first, second, 0.0, square, braking) < square:
         square *= 0.5  # what a tight curve needs of the acceleration grows with y
@@ -47,9 +49,7 @@ def slope_from_rest(square: float, distance: float) -> float:
     return 4.0 * square / (3.0 * distance)
 
 
-def one_pass(
-    cells: Sequence[PathCell], caps: Sequence[float], square: float, slope: float, *, braking: bool
-) -> list[float]:
+def one_pass(cells: list[PathCell], caps: list[float], square: float, slope: float, *, braking: bool) -> list[float]:
     """y of each cell, coming from the first: from rest if `square` is 0, else from y = `square` with dy/du = `slope`.
 
     `braking`: the cells are in reverse order, so that the pass brakes for the last one of the path.
@@ -96,7 +96,7 @@ def steepest_slope(here: PathCell, there: PathCell, square: float, slope: float,
     steepest = slope + here.bending(square, square, (sign * slope, sign * slope), True) * width
     steepest = min(steepest, 2.0 * permitted(here, there, square, square, braking))
     ahead = min(square + steepest * half, max(here.limit, there.limit))
-    lowest, highest = min(square, behind, ahead), max(square, behind, ahead)
+    lowest, highest = min(square, min(behind, ahead)), max(square, max(behind, ahead))
     bend = here.bending(max(0.0, lowest), highest, (sign * slope, sign * steepest), True)
     steepest = min(steepest, slope + bend * width)
     return min(steepest, 2.0 * permitted(here, there, lowest, highest, braking))

@@ -31,10 +31,10 @@ class LinkedMotion:
     """A motion of the path: its element, the limits of the axes and the feed (mm/s, inf in rapid traverse).
 
     `shown`: the feed, in rapid traverse the velocity that the axes allow; `kinematics`: the element is Cartesian, and
-    these are the axes.
+    these are the axes; `room`: mm at its start that the curve of a corner may take.
     """
 
-    __slots__ = ("axes", "block", "feed", "kinematics", "shown", "span", "transition")
+    __slots__ = ("axes", "block", "feed", "kinematics", "room", "shown", "span", "transition")
 
     def __init__(
         self,
@@ -45,8 +45,9 @@ class LinkedMotion:
         transition: Transition,
         shown: float = inf,
         kinematics: Kinematics | None = None,
+        room: float = inf,
     ) -> None:
-        self.kinematics = kinematics
+        self.kinematics, self.room = kinematics, room
         self.span = whole(element, block)
         self.axes, self.feed, self.block = axes, feed, block
         self.shown = shown
@@ -69,6 +70,8 @@ class PathBuilder:
         self._smoother: Smoother | None = None
         self._smoothed: LinkedMotion | None = None
         """The last motion that went into the smoother."""
+        self._room = inf
+        """mm at the start of the smooth curve that a corner before it may take."""
 
     def begin(self) -> None:
         """A path begins at rest."""
@@ -112,6 +115,9 @@ class PathBuilder:
             return parts + self._link(motion)
         if self._smoother is None:
             self._smoother = Smoother(element.start, self._path_axes, smoothing.path_dev, smoothing.track_dev)
+            self._room = inf if motion.transition.contour is not None else 0.0
+        if self._room == 0.0:  # no contouring between the short blocks: a corner before them is in the first one alone
+            self._room = 0.5 * element.length
         self._smoothed = motion
         self._smoother.add(element.target, motion.block, motion.feed)
         return parts + self._pieces()
@@ -156,8 +162,10 @@ class PathBuilder:
         assert smoother is not None and motion is not None
         for piece in smoother.take():
             made = LinkedMotion(
-                piece.geometry, motion.axes, piece.feed, piece.block, motion.transition, kinematics=motion.kinematics
-            )
+                piece.geometry, motion.axes, piece.feed, piece.block, motion.transition,
+                kinematics=motion.kinematics, room=self._room,
+            )  # fmt: skip
+            self._room = inf
             parts += self._link(made)
         return parts
 
@@ -182,10 +190,10 @@ class PathBuilder:
     def _join(self, last: LinkedMotion, motion: LinkedMotion) -> tuple[Corner | None, float]:
         """The curve between two motions, or else the y with which the kink can be passed; 0 is an exact stop."""
         contour = last.transition.contour
-        made = None if contour is None else corner(last.span, motion.span, contour, self._path_axes)
+        made = None if contour is None else corner(last.span, motion.span, contour, self._path_axes, motion.room)
         if made is not None and self._passable(made, motion.kinematics):
             return made, inf
-        limits = narrower(last.axes, motion.axes)
+        limits = last.axes if last.axes is motion.axes else narrower(last.axes, motion.axes)
         square = kink_square(last.span, motion.span, limits, self._cycle_time, motion.kinematics, self.reached)
         if square < inf:
             alone = min(last.span.length, motion.span.length) / (KINK_CYCLES * self._cycle_time)

@@ -12,7 +12,6 @@ so that its limits are linear in y, b and c but for the factor √y of the jerk.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from math import inf, sqrt
 from typing import Final
 
@@ -89,13 +88,13 @@ class PathCell:
         up: float,
         down: float,
         jerk: float,
-        loads: Sequence[AxisLoad] = (),
+        loads: list[AxisLoad] | None = None,
     ) -> None:
         self.begin, self.end = begin, end
         self.middle, self.length = 0.5 * (begin + end), end - begin
         self.limit, self.feed = limit, feed
         self.up, self.down, self.jerk = up, down, jerk
-        self.loads = loads
+        self.loads: list[AxisLoad] = loads or []
         self.planned = 0.0
 
     def part(self, begin: float, end: float) -> PathCell:
@@ -146,8 +145,9 @@ class PathCell:
             jerk = max(abs(0.5 * load.first * bend + curve), abs(0.5 * load.least * bend + curve))
             acceleration += load.spread * square
             jerk += 1.5 * load.spread * abs(slope) + load.wring * square
-            parts = (load.first * speed / load.velocity, acceleration / load.acceleration, speed * jerk / load.jerk)
-            most = max(most, *parts)
+            most = max(most, load.first * speed / load.velocity)
+            most = max(most, acceleration / load.acceleration)
+            most = max(most, speed * jerk / load.jerk)
         return most
 
 
@@ -155,7 +155,7 @@ SMALLEST_SQUARE: Final = 1e-12
 """y of a path that is practically at rest."""
 
 
-def largest_square(loads: Sequence[AxisLoad]) -> float:
+def largest_square(loads: list[AxisLoad]) -> float:
     """Largest y on a curve at which no axis exceeds its limits while the velocity is constant."""
     square = inf
     for load in loads:

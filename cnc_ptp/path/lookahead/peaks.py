@@ -6,25 +6,23 @@ convex hull. K is the smaller one of the two passes; its valleys are round alrea
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from cnc_ptp.path.lookahead.path_cell import PathCell
 
 
-def bends(cells: Sequence[PathCell], places: Sequence[float], squares: Sequence[float]) -> list[float]:
+def bends(cells: list[PathCell], places: list[float], squares: list[float]) -> list[float]:
     """Change of dy/du that each inner cell permits at the velocities `squares`."""
     found = [0.0] * len(cells)
     for index in range(1, len(cells) - 1):
         before = (squares[index] - squares[index - 1]) / (places[index] - places[index - 1])
         after = (squares[index + 1] - squares[index]) / (places[index + 1] - places[index])
         half = 0.5 * cells[index].length
-        highest = squares[index] + max(0.0, after, -before) * half
-        lowest = max(0.0, squares[index] + min(0.0, after, -before) * half)
+        highest = squares[index] + max(0.0, max(after, -before)) * half
+        lowest = max(0.0, squares[index] + min(0.0, min(after, -before)) * half)
         found[index] = cells[index].bending(lowest, highest, (before, after), False) * cells[index].length
     return found
 
 
-def round_peaks(places: Sequence[float], squares: Sequence[float], bend: Sequence[float], first: int) -> list[float]:
+def round_peaks(places: list[float], squares: list[float], bend: list[float], first: int) -> list[float]:
     """y of each cell with rounded peaks, from cell `first` on, which keeps its y."""
     count = len(squares)
     raised = [0.0] * count
@@ -48,14 +46,12 @@ def round_peaks(places: Sequence[float], squares: Sequence[float], bend: Sequenc
     return rounded
 
 
-def chord(places: Sequence[float], squares: Sequence[float], raised: Sequence[float], begin: int, end: int) -> float:
+def chord(places: list[float], squares: list[float], raised: list[float], begin: int, end: int) -> float:
     """Slope of K + C from one cell to another."""
     rise = squares[end] - squares[begin] + (raised[end] - raised[begin])
     return rise / (places[end] - places[begin])
 
 
-def is_below(
-    places: Sequence[float], squares: Sequence[float], raised: Sequence[float], begin: int, middle: int, end: int
-) -> bool:
+def is_below(places: list[float], squares: list[float], raised: list[float], begin: int, middle: int, end: int) -> bool:
     """The middle one is a corner of the hull: it is below the chord of its neighbours."""
     return chord(places, squares, raised, begin, middle) < chord(places, squares, raised, middle, end)

@@ -7,7 +7,7 @@ last cell the path takes constant jerk from rest and to rest.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Final, NamedTuple
 
 from cnc_ptp.path.lookahead.passes import one_pass
@@ -42,13 +42,13 @@ class MovingStart(NamedTuple):
 class VelocityPlan(NamedTuple):
     """y of the cells (`squares`), at `places`: their middles; at rest the foot of the tangent."""
 
-    cells: Sequence[PathCell]
-    places: Sequence[float]
-    squares: Sequence[float]
+    cells: list[PathCell]
+    places: list[float]
+    squares: list[float]
 
 
 def plan_velocity(
-    cells: Sequence[PathCell], start: MovingStart, override: float, delay: int = 0, before: float = 0.0
+    cells: list[PathCell], start: MovingStart, override: float, delay: int = 0, before: float = 0.0
 ) -> VelocityPlan | None:
     """Plan from the start to rest at the end of the last cell; None if the start is too fast for that.
 
@@ -78,7 +78,7 @@ def plan_velocity(
     return VelocityPlan(cells, places, squares)
 
 
-def caps_of(cells: Sequence[PathCell], override: float, delay: int, before: float) -> list[float]:
+def caps_of(cells: list[PathCell], override: float, delay: int, before: float) -> list[float]:
     """Largest y of each cell: that of its neighbours counts, too, as y is nearly theirs at the ends of the cell.
 
     Before cell `delay` what was planned before may be kept, though it is above the feed; but not more
@@ -102,7 +102,7 @@ def caps_of(cells: Sequence[PathCell], override: float, delay: int, before: floa
     return caps
 
 
-def places_of(cells: Sequence[PathCell], *, moving: bool) -> list[float]:
+def places_of(cells: list[PathCell], *, moving: bool) -> list[float]:
     """Where y of each cell is on its tangents."""
     places = [cell.middle for cell in cells]
     if not moving:
@@ -111,16 +111,14 @@ def places_of(cells: Sequence[PathCell], *, moving: bool) -> list[float]:
     return places
 
 
-def highest(
-    cells: Sequence[PathCell], places: Sequence[float], caps: Sequence[float], start: MovingStart
-) -> list[float] | None:
+def highest(cells: list[PathCell], places: list[float], caps: list[float], start: MovingStart) -> list[float] | None:
     """The largest y under all limits; None if the start cannot be continued like that."""
     moving = start.square > 0.0
     forward = one_pass(cells, caps, start.square, start.slope, braking=False)
     backward = one_pass(cells[::-1], caps[::-1], 0.0, 0.0, braking=True)[::-1]
     if moving and not 0.0 <= forward[1] <= min(backward[1], caps[1]) * (1.0 + ROOM):
         return None
-    lowest = [min(pair) for pair in zip(forward, backward, strict=True)]
+    lowest = [min(forward[index], backward[index]) for index in range(len(cells))]
     first = 0
     if moving:
         first = 1
@@ -137,9 +135,7 @@ def highest(
     return squares
 
 
-def exceeded(
-    cells: Sequence[PathCell], places: Sequence[float], squares: Sequence[float], start: MovingStart
-) -> list[float]:
+def exceeded(cells: list[PathCell], places: list[float], squares: list[float], start: MovingStart) -> list[float]:
     """For each cell the largest part of a limit that the plan takes in it."""
     parts = [0.0] * len(cells)
     before = (squares[1] - squares[0]) / (places[1] - places[0])
@@ -166,9 +162,7 @@ def excess_at_rest(cell: PathCell, square: float, slope: float) -> float:
     return cell.excess(square, slope, 4.0 * square / (9.0 * cell.length * cell.length))
 
 
-def lower(
-    cells: Sequence[PathCell], caps: list[float], squares: Sequence[float], excesses: Sequence[float], *, keep: bool
-) -> None:
+def lower(cells: list[PathCell], caps: list[float], squares: list[float], excesses: list[float], *, keep: bool) -> None:
     """Lowers the limits where one was exceeded, and of the neighbours; `keep`: not below what was planned before."""
     for index, excess in enumerate(excesses):
         if excess > 1.0 + EXCESS:
@@ -195,7 +189,7 @@ def earliest(count: int, plan_at: Callable[[int], VelocityPlan | None]) -> Veloc
     return found
 
 
-def stop_soon(cells: Sequence[PathCell], start: MovingStart, before: float) -> VelocityPlan | None:
+def stop_soon(cells: list[PathCell], start: MovingStart, before: float) -> VelocityPlan | None:
     """To rest at the end of the first cell at which that is possible; the feed with `before` counts."""
     last = len(cells) - 1
 

@@ -1,0 +1,58 @@
+"""Blocks that become parts of a path: where a corner before short blocks may be."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from cnc_ptp.nc.contour import Contour, Smoothing, Transition
+from cnc_ptp.path.geometry import AxisLimits, Line
+from cnc_ptp.path.lookahead.parts import PathPart
+from cnc_ptp.path.lookahead.path_builder import LinkedMotion, PathBuilder
+
+XYZ = (0, 1, 2)
+AXES = [AxisLimits(500.0, 1000.0, 1000.0, 20_000.0)] * 3
+PATH_DEV = 0.002
+CORNER_DEV = 0.15
+
+
+def parts_of(points: list[tuple[float, float, float]], contour_of_short: Contour | None) -> list[PathPart]:
+    """The first block is contoured, the others are short blocks of #HSC."""
+    first = Transition(exact=False, contour=Contour(path_dev=CORNER_DEV))
+    short = Transition(exact=False, contour=contour_of_short, smoothing=Smoothing(PATH_DEV))
+    builder, parts = PathBuilder(XYZ, 0.001), []
+    builder.begin()
+    for block, (begin, end) in enumerate(pairwise(points)):
+        parts += builder.add(LinkedMotion(Line(begin, end, XYZ), AXES, 100.0, block, short if block else first))
+    return parts + builder.finish()
+
+
+def places_of(parts: list[PathPart]) -> np.ndarray:
+    return np.array(
+        [[q for q, *_ in part.geometry.shape(u)] for part in parts for u in np.linspace(0.0, part.length, 60)]
+    )
+
+
+def along_x_then_y(doubled: bool) -> list[tuple[float, float, float]]:
+    """10 mm along X, then chords of 0.01 mm along Y; `doubled`: the first of them has no length."""
+    corner = [(0.0, 0.0, 0.0)] * (2 if doubled else 1)
+    return [(-10.0, 0.0, 0.0), *corner, *((0.0, 0.01 * n, 0.0) for n in range(1, 301))]
+
+
+@pytest.mark.parametrize("doubled", [False, True])
+def test_a_corner_before_short_blocks_is_in_the_first_of_them_alone(doubled: bool) -> None:
+    """The tolerance of the corner is not theirs (random program 2135)."""
+    parts = parts_of(along_x_then_y(doubled), None)
+    places = places_of(parts)
+    assert all(part.entry > 0.0 for part in parts[1:]), "the corner is a curve"
+    behind = places[places[:, 1] > 0.005]
+    assert np.abs(behind[:, 0]).max() <= PATH_DEV
+    assert np.abs(places[-1] - (0.0, 3.0, 0.0)).max() < 1e-9
+
+
+def test_contoured_short_blocks_share_the_corner() -> None:
+    """They have its tolerance, so the curve goes on to the half of a piece, over many of them."""
+    places = places_of(parts_of(along_x_then_y(False), Contour(path_dev=CORNER_DEV)))
+    assert places[np.abs(places[:, 0]) > 1e-9, 1].max() > 0.3
