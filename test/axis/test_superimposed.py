@@ -277,10 +277,7 @@ def test_a_second_one_takes_the_place_of_the_first(basic: bool, distance: float)
     events = [event for event in told(bench) if event[0] in (first, second)]
     assert events == [(first, ACTIVE), (first, ABORTED), (second, ACTIVE), (second, DONE)]
     stopping = 0.5 * 50.0 * RAMP
-    if distance > stopping:
-        seconds = RAMP + (distance - stopping) / 50.0
-    else:
-        seconds = RAMP + seconds_of(stopping - distance)
+    seconds = RAMP + (distance - stopping) / 50.0 if distance > stopping else RAMP + seconds_of(stopping - distance)
     assert end_of(bench, first).cycle == start_of(bench, second) == at
     assert end_of(bench, second).cycle == at + int(np.ceil(seconds / CYCLE_TIME - 1e-9))
     assert added[:, 0].max() <= max(covered + stopping, covered + distance) + 1e-9
