@@ -50,9 +50,9 @@ class TrajectoryJob(Job):
         jobs = self.jobs.values()
         if len(jobs) < len(self._axes):
             return None
-        return (
-            max(job.status or JobStatus.ACTIVE for job in jobs) if all(job.ended for job in jobs) else JobStatus.ACTIVE
-        )
+        if not all(job.ended for job in jobs):
+            return JobStatus.ACTIVE
+        return max(job.status or JobStatus.ACTIVE for job in jobs)
 
     @property
     def reached(self) -> bool:
