@@ -8,8 +8,16 @@ from __future__ import annotations
 
 from math import ceil
 
+from cnc_ptp.axis.job import stronger
 from cnc_ptp.axis.tables import peak_velocity, standing
-from cnc_ptp.motion import Limits, Profile, plan_rest_to_rest, plan_to_velocity
+from cnc_ptp.motion import (
+    Limits,
+    Profile,
+    plan_rest_to_rest,
+    plan_to_velocity,
+    plan_with_ramp,
+    stopping_distance,
+)
 from cnc_ptp.motion.setpoints import MotionState
 
 
@@ -28,10 +36,37 @@ class AddedMotion:
         """It ends before its distance is covered."""
 
     def start(self, cycle: int, distance: float, limits: Limits) -> None:
-        """Starts at `cycle`, at which it must be at rest, over `distance` (mm, deg)."""
-        begin = self._profile.end[0]
-        self._limits, self.halting = limits, False
-        self._take(cycle, plan_rest_to_rest(begin, begin + distance, limits))
+        """Starts at `cycle` over `distance` (mm, deg); one that moves is replaced.
+
+        Where `limits` would lead past the new end, A- and J of the motion until now count where these are larger: it
+        never goes further than that one would have done.
+        """
+        self.halting = False
+        if self.moving(cycle):
+            profile, self._limits = self._from_motion(cycle, distance, limits)
+        else:
+            begin = self._profile.end[0]
+            profile, self._limits = plan_rest_to_rest(begin, begin + distance, limits), limits
+        self._take(cycle, profile)
+
+    def _from_motion(self, cycle: int, distance: float, limits: Limits) -> tuple[Profile, Limits]:
+        position, velocity, acceleration, _ = self.state(cycle)
+        target, ramp = position + distance, self._ramp(limits)
+        return plan_with_ramp(position, velocity, acceleration, target, limits, ramp)
+
+    def _ramp(self, limits: Limits) -> Limits:
+        """`limits` with A- and J of the motion until now where these are larger."""
+        return stronger(limits, self._limits) or limits
+
+    def growth(self, cycle: int, distance: float) -> float:
+        """By how much its end moves when it starts over `distance` at `cycle`."""
+        return self.state(cycle)[0] + distance - self.offset if self.moving(cycle) else distance
+
+    def ahead(self, cycle: int, distance: float, limits: Limits) -> float:
+        """What would be left of `distance` if it came to rest first; the sign is the direction in which it goes."""
+        _, velocity, acceleration, _ = self.state(cycle)
+        ramp = self._ramp(limits)
+        return distance - stopping_distance(velocity, acceleration, ramp.deceleration, ramp.jerk)
 
     def halt(self, cycle: int) -> None:
         """Ends on the ramp of its start; what it has covered until then stays."""

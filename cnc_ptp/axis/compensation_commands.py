@@ -86,7 +86,7 @@ class CompensationCommands:
             axis.refuse(START, SUPERIMPOSED_RUNS, "a superimposed motion is active")
         if axis.coupled and not axis.on_path:
             return
-        moves = axis.state in (S.DISCRETE_MOTION, S.STOPPING) or axis.ptp.job is not None
+        moves = axis.state in (S.DISCRETE_MOTION, S.STOPPING) or (axis.ptp.job is not None and not axis.ptp.stands)
         if not moves or axis.state == S.HOMING:
             state = state_name(axis.state)
             reason = f"no basic motion is active (the axis is in {state})"

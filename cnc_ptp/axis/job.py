@@ -38,6 +38,8 @@ class Job:
     """Signed velocity (mm/s, deg/s) with which it passes its target (blending); 0: it ends there."""
     jog: bool = False
     """Only another jog may change it."""
+    stands: bool = False
+    """Endless at velocity 0."""
 
     def shifted(self, distance: float) -> Job:
         """The same in coordinates that have grown by `distance`."""

@@ -20,7 +20,7 @@ from cnc_ptp.axis import transitions as T
 from cnc_ptp.axis.axis import Axis, Report
 from cnc_ptp.axis.faults import BELOW_INCREMENT, COMPENSATION_RUNS, MOTION_WAITS, NOT_READY
 from cnc_ptp.axis.job import Job
-from cnc_ptp.axis.motions import Motion, ToModulo, ToTarget, refuse_beside_trajectory, refuse_other_source
+from cnc_ptp.axis.motions import AtRest, Motion, ToModulo, ToTarget, refuse_beside_trajectory, refuse_other_source
 from cnc_ptp.errors import CncError, warning_text
 from cnc_ptp.motion import Limits, stopping_distance
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
@@ -109,7 +109,9 @@ class MotionQueue:
         axis = self._axis
         axis.leave_trajectory(cycle)
         target, from_rest = goal - axis.shift(cycle), axis.state == S.STANDSTILL
-        if from_rest and not motion.endless:
+        if isinstance(motion, AtRest):
+            axis.ptp.come_to_rest(cycle, motion.limits, motion.room(axis, cycle))
+        elif from_rest and not motion.endless:
             axis.ptp.start(cycle, target, motion.limits)
         else:
             axis.ptp.continue_to(cycle, target, motion.limits, jog=jog)

@@ -120,3 +120,23 @@ class AtVelocity(Motion):
             axis.refuse(self.command, limit.number, reason, position=start, limit=limit.position)
         if room <= axis.parameters.encoder_increment and at_rest:
             axis.refuse(self.command, limit.number, f"the axis is at its {limit.text}", limit=limit.position)
+
+
+class AtRest(Motion):
+    """Motion at velocity 0: the axis comes to rest, and waits there for another motion."""
+
+    def __init__(self, command: str, limits: Limits, warning: str | None) -> None:
+        super().__init__(command, limits, warning)
+        self.endless = True
+
+    def goal(self, axis: Axis, start: float) -> float:
+        return start
+
+    def check(self, axis: Axis, start: float, goal: float, *, at_rest: bool) -> None:
+        """See Motion: it leads nowhere."""
+
+    def room(self, axis: Axis, cycle: int) -> tuple[float, float]:
+        """Where the basic motion may come to rest: from the negative soft limit to the positive one."""
+        low, high = (axis.checks.soft_limit(direction).position for direction in (-1.0, 1.0))
+        shift = axis.shift(cycle)
+        return low - shift, high - shift

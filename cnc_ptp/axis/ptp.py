@@ -93,7 +93,7 @@ class PtpGenerator:
 
     def _must_wait(self, cycle: int, job: Job) -> bool:
         """True if a stop would bring the axis to rest where the target is in a withheld direction."""
-        if not self.restricted:
+        if not self.restricted or job.stands:
             return False
         if job.through:
             return self.withholds(job.through)
@@ -145,7 +145,7 @@ class PtpGenerator:
     @property
     def target_velocity(self) -> float:
         """Velocity (mm/s, deg/s) of the active job at 100 % override; 0.0 without one."""
-        return 0.0 if self.job is None else self._full_velocity(self.job)
+        return 0.0 if self.job is None or self.job.stands else self._full_velocity(self.job)
 
     @property
     def rest(self) -> float:
@@ -168,7 +168,7 @@ class PtpGenerator:
         if job.through:
             return self._crossing(cycle, Activation(job.target, copysign(1.0, job.through), 0.0))
         if isinf(job.target):
-            return max(cycle, self._end_cycle()) if self._profile.end[1] else None
+            return max(cycle, self._end_cycle()) if self._profile.end[1] or job.stands else None
         constant = self._constant_from(cycle, self._level(job).velocity) if in_velocity else None
         if constant is None and self._ends_at(job):
             return max(cycle, self._end_cycle())
@@ -241,6 +241,25 @@ class PtpGenerator:
         job = replace(self._job_in_motion(cycle, target, limits, ramp), jog=jog)
         self._activation = self._due = None
         self._begin(cycle, job, *self._table(cycle, job))
+
+    def come_to_rest(self, cycle: int, limits: Limits, room: tuple[float, float]) -> None:
+        """An endless job at velocity 0, on the ramp of `limits`.
+
+        Where that would lead out of `room` (lowest and highest position), A- and J of the motion until now count where
+        these are larger. Raises CncError 23001; then nothing is changed.
+        """
+        check_limits(limits)
+        end = plan_to_velocity(*self._start(cycle), 0.0, limits).end[0]
+        if not room[0] <= end <= room[1]:
+            limits = stronger(limits, self._ramp_limits) or limits
+        self._activation = self._due = None
+        job = Job(inf, limits, 0.0, stands=True)
+        self._begin(cycle, job, *self._table(cycle, job))
+
+    @property
+    def stands(self) -> bool:
+        """The active job is at velocity 0."""
+        return self.job is not None and self.job.stands
 
     def pass_through(self, cycle: int, velocity: float) -> None:
         """The active positioning passes its target with the signed `velocity` (mm/s), as far as it can reach that.
@@ -453,10 +472,10 @@ class PtpGenerator:
     def _table(self, cycle: int, job: Job) -> tuple[Profile, Limits]:
         """The table to the target at the velocity of the override, and the limits of its first part.
 
-        With override 0 it leads to standstill.
+        With override 0, and at velocity 0, it leads to standstill.
         """
         start, level = self._start(cycle), self._level(job)
-        if self.override == 0.0:
+        if self.override == 0.0 or job.stands:
             limits = self._braking(cycle, job)
             return plan_to_velocity(*start, 0.0, limits), limits
         return job.table(start, level, min(abs(job.through) * self.override, self.ceiling))

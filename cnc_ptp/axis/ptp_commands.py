@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from cnc_ptp.axis import transitions as T
 from cnc_ptp.axis.axis import Axis
-from cnc_ptp.axis.faults import BAD_DYNAMICS, COMPENSATION_RUNS, NO_MODULO_AXIS, NO_POSITIONING, NOT_READY
+from cnc_ptp.axis.faults import COMPENSATION_RUNS, NO_MODULO_AXIS, NO_POSITIONING, NOT_READY
 from cnc_ptp.axis.motion_queue import MotionQueue
-from cnc_ptp.axis.motions import AtVelocity, ByDistance, ToModulo, ToTarget
+from cnc_ptp.axis.motions import AtRest, AtVelocity, ByDistance, ToModulo, ToTarget
 from cnc_ptp.axis.two_stage import Request
 from cnc_ptp.motion import Limits
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
@@ -56,12 +56,11 @@ class PtpCommands:
     def do_move_velocity(self, cycle: int, *, velocity: float, buffer_mode: str = "", **dynamics: float) -> str | None:
         """Moves at `velocity` (mm/s, deg/s; its sign is the direction) until another motion comes.
 
-        On a linear axis it ends at the soft limit. Refusals as move_absolute.
+        On a linear axis it ends at the soft limit. At 0 it comes to rest and waits there. Refusals as move_absolute.
         """
         command = "move_velocity"
         if velocity == 0.0:
-            reason = "velocity = 0 must be different from 0; halt the axis"
-            self._axis.refuse(command, BAD_DYNAMICS, reason, argument="velocity", value=velocity)
+            return self._queue.start(cycle, AtRest(command, *self._limits(command, dynamics)), buffer_mode)
         limits = self._limits(command, {"velocity": abs(velocity), **dynamics})
         return self._queue.start(cycle, AtVelocity(command, *limits, velocity), buffer_mode)
 

@@ -12,7 +12,6 @@ from cnc_ptp.axis.faults import (
     FEED_WITHHELD,
     NOT_READY,
     START_BESIDE_EXTERNAL,
-    SUPERIMPOSED_RUNS,
     VELOCITY_TOO_HIGH,
 )
 from cnc_ptp.axis.motion_queue import MotionQueue
@@ -41,24 +40,28 @@ class SuperimposedCommands:
         """Adds `distance` (mm, deg) to the basic motion, with a velocity and dynamics in addition to those it has.
 
         Without `velocity_difference` it is what P-AXIS-00212 leaves. The target of a positioning moves by `distance`.
-        Refusals: 23003 – 23005, 23011, 23013, 23015, 23027, 23058, 23059, 120002, 120003.
+        A superimposed motion that is active ends where it is: `distance` counts from there.
+        Refusals: 23003 – 23005, 23011, 23013, 23015, 23027, 23058, 120002, 120003.
         """
         axis = self._axis
-        self._check_state(cycle, distance)
+        self._check_state()
         base = self._basic_velocity(cycle)
         velocity = self._velocity(base, velocity_difference)
         limits, warning = axis.checks.rescaled_jerk(MOVE, axis.checks.dynamics(MOVE, {"velocity": velocity} | dynamics))
         self._check_sum(base, velocity)
-        if abs(distance) < axis.parameters.encoder_increment or distance == 0.0:
+        self._check_release(cycle, distance, limits)
+        small = abs(distance) < axis.parameters.encoder_increment or distance == 0.0
+        if small and not axis.added.moving(cycle):
             increment = f"one encoder increment ({axis.parameters.encoder_increment} {axis.unit})"
             text = f"axis {axis.name}: {MOVE} over {abs(distance):g} {axis.unit} is below {increment}; nothing is added"
             return warning_text(BELOW_INCREMENT, text)
-        self._queue.check_addition(cycle, distance)
-        self._make_room(cycle, distance)
+        growth = axis.added.growth(cycle, distance)
+        self._queue.check_addition(cycle, growth)
+        self._make_room(cycle, growth)
         self._start(cycle, distance, limits)
         return warning
 
-    def _check_state(self, cycle: int, distance: float) -> None:
+    def _check_state(self) -> None:
         axis = self._axis
         if axis.state not in PERMITTED:
             axis.refuse(MOVE, NOT_READY, f"the axis is in {state_name(axis.state)}", state=state_name(axis.state))
@@ -67,16 +70,21 @@ class SuperimposedCommands:
             axis.refuse(MOVE, START_BESIDE_EXTERNAL, "external setpoints are enabled")
         if axis.compensation.active:
             axis.refuse(MOVE, COMPENSATION_RUNS, "a position compensation is active")
-        if axis.added.moving(cycle):
-            axis.refuse(MOVE, SUPERIMPOSED_RUNS, "a superimposed motion is active")
-        if axis.ptp.withholds(distance):
-            where = "forward" if distance > 0.0 else "backward"
-            axis.refuse(MOVE, FEED_WITHHELD, f"it leads {where}, which is not released (set_feed_release)")
+
+    def _check_release(self, cycle: int, distance: float, limits: Limits) -> None:
+        """Neither what it does now nor where it is to go may be withheld."""
+        axis = self._axis
+        for direction in (axis.added.state(cycle)[1], axis.added.ahead(cycle, distance, limits)):
+            if axis.ptp.withholds(direction):
+                where = "forward" if direction > 0.0 else "backward"
+                axis.refuse(MOVE, FEED_WITHHELD, f"it leads {where}, which is not released (set_feed_release)")
 
     def _basic_velocity(self, cycle: int) -> float:
-        """The largest speed of the basic motion that is known."""
+        """The largest speed of the basic motion that is known, beside a superimposed motion that is active."""
         axis = self._axis
-        return axis.target_velocity() if axis.coupled else axis.ptp.highest_velocity(cycle)
+        if axis.coupled:
+            return axis.target_velocity()
+        return min(axis.ptp.highest_velocity(cycle), axis.ptp.ceiling)
 
     def _velocity(self, base: float, given: float | None) -> float:
         """The velocity difference; if it is left out, what the basic motion leaves."""

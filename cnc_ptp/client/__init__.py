@@ -6,6 +6,7 @@ The function blocks of PLCopen take its axes and spindles: `MC_MoveAbsolute(m.x)
 from cnc_ptp.client.faults import UnknownUnit
 from cnc_ptp.client.job import Answer, Job, ProgramJob
 from cnc_ptp.client.machine import Machine
+from cnc_ptp.client.several_jobs import TrajectoryJob
 from cnc_ptp.client.states import AxisState, ChannelState, SpindleState
 from cnc_ptp.client.stream import Stream
 from cnc_ptp.client.units import Axis, Channel, Plc, Spindle
@@ -90,5 +91,6 @@ __all__ = [
     "SpindleState",
     "StatusBit",
     "Stream",
+    "TrajectoryJob",
     "UnknownUnit",
 ]

@@ -33,6 +33,15 @@ def moves(blocks: Blocks, unit: str, arguments: Mapping[str, Any]) -> bool:
     return is_endless and has_bit(block, StatusBit.CONSTANT_VELOCITY)
 
 
+def has_velocity(blocks: Blocks, unit: str, arguments: Mapping[str, Any]) -> bool:
+    """The axis moves at a constant velocity; at velocity 0 it has come to rest."""
+    block = blocks[unit]
+    if arguments["velocity"] or not isinstance(block, AxisBlock):
+        return moves(blocks, unit, arguments)
+    rests = block.set_velocity[-1] == block.set_acceleration[-1] == 0.0
+    return rests and has_state(block, AxisStateCode.CONTINUOUS_MOTION)
+
+
 def follows(blocks: Blocks, unit: str, arguments: Mapping[str, Any]) -> bool:
     """The axis is a slave."""
     block = blocks[unit]
@@ -70,6 +79,7 @@ def has_state(block: CycleBlock, state: AxisStateCode) -> bool:
 GOALS: Mapping[tuple[str, str], Goal] = {
     ("spindle", "start"): turns,
     ("spindle", "set_speed"): turns,
+    ("axis", "move_velocity"): has_velocity,
     ("axis", "jog"): moves,
     ("axis", "decouple"): moves,
     ("axis", "couple"): follows,

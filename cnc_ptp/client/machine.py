@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import atexit
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from os import PathLike, fspath
 from types import TracebackType
 from typing import Any, TypeVar
 
+from cnc_ptp.client.asking import Rows
 from cnc_ptp.client.faults import check_seconds, unknown_unit
 from cnc_ptp.client.link import Link
 from cnc_ptp.client.plc_cycles import PlcCycles
 from cnc_ptp.client.session import Session, Turns
+from cnc_ptp.client.several_jobs import TrajectoryJob
 from cnc_ptp.client.stream import Stream
 from cnc_ptp.client.units import UNITS, Axis, Channel, Plc, Spindle, Unit
+from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import Event
 from cnc_ptp.protocol.unit import PLC
 
@@ -123,6 +127,24 @@ class Machine:
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self._units]
 
+    def follow(
+        self,
+        axes: Sequence[Axis | str],
+        points: Rows,
+        *,
+        path_tolerance: Rows | None = None,
+        goal_tolerance: Rows | None = None,
+        goal_time: float | None = None,
+    ) -> TrajectoryJob:
+        """Axes follow a trajectory together: `m.follow([m.x, m.y], [(1.0, [100, 50], [0, 0])]).wait()`.
+
+        The arguments are those of `m.plc.follow_trajectory`. Raises its refusal: the form of the points. What an axis
+        refuses, and what goes wrong on the way, `wait` raises.
+        """
+        names = [axis if isinstance(axis, str) else axis.name for axis in axes]
+        given = {"path_tolerance": path_tolerance, "goal_tolerance": goal_tolerance, "goal_time": goal_time}
+        return self.plc._trajectory_job(names, points, given)
+
     # time
 
     @property
@@ -184,9 +206,17 @@ class Machine:
         """The end: an offline machine, or a graph that was started, stops on its ramps. A second call has no effect."""
         if self._session.closed:
             return
+        self._let_go()
         self._session.closed = True
         atexit.unregister(self.close)
         self._session.link.close()
+
+    def _let_go(self) -> None:
+        """Units that MC_Stop of this program holds are free; a machine that is gone holds none."""
+        for unit in self._units.values():
+            if unit.stops:
+                with suppress(CncError):
+                    self._session.ask(unit.name, "hold_stop", {"enabled": False})
 
     def __enter__(self) -> Machine:
         return self

@@ -10,6 +10,7 @@ from weakref import WeakSet
 
 from cnc_ptp.parameters.declare.declarations import ParameterValue
 from cnc_ptp.plc.program.references import WRITE_PARAMETER
+from cnc_ptp.plc.trajectories import BEGIN
 from cnc_ptp.protocol.blocks import (
     ChannelBlock,
     CommandRecord,
@@ -26,6 +27,7 @@ from cnc_ptp.protocol.unit import PLC
 Item = TypeVar("Item")
 JOBS_KEPT = 1000
 FAULTS_KEPT = 100
+TRAJECTORIES_KEPT = 100
 BLOCKS_KEPT = 1000
 """Of a stream that nobody reads: ten seconds of blocks."""
 EVENTS_KEPT = 10_000
@@ -57,6 +59,7 @@ class Observations:
         self._jobs: dict[str, dict[int, JobEvent]] = {unit: {} for unit in names}
         self._faults: dict[str, deque[Event]] = {unit: deque(maxlen=FAULTS_KEPT) for unit in names}
         self._gaps: dict[str, int] = {}
+        self._trajectories: dict[str, deque[CommandRecord]] = {unit: deque(maxlen=TRAJECTORIES_KEPT) for unit in names}
         self._written: dict[str, dict[str, ParameterValue]] = {unit: {} for unit in names}
         self._block_readers: dict[str, WeakSet[Mailbox[CycleBlock]]] = {unit: WeakSet() for unit in names}
         self._event_readers: WeakSet[Mailbox[Event]] = WeakSet()
@@ -95,12 +98,22 @@ class Observations:
         if record.command == WRITE_PARAMETER and record.accepted and record.target in self._written:
             arguments = json.loads(record.arguments_json)
             self._written[record.target][arguments["parameter"]] = arguments["value"]
+        elif record.command == BEGIN and record.target in self._trajectories:
+            self._trajectories[record.target].append(record)
 
     # what is asked
 
     def written(self, unit: str) -> Mapping[str, ParameterValue]:
         """Parameters of a unit that were written at run time, by P number."""
         return self._written[unit]
+
+    def trajectory(self, unit: str, cycle: int) -> CommandRecord | None:
+        """What an axis has answered to the first trajectory that it got at `cycle` or later; None before it has."""
+        return next((record for record in self._trajectories[unit] if record.cycle >= cycle), None)
+
+    def has_gap(self, unit: str, cycle: int) -> bool:
+        """Blocks of the unit behind `cycle` have not come."""
+        return self._gaps.get(unit, 0) > cycle
 
     def job_event(self, unit: str, job: int) -> JobEvent | None:
         """The last that is known of a job; None before it has begun."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from cnc_ptp.client.asking import Asking
@@ -11,8 +11,10 @@ from cnc_ptp.client.made.axis_commands import AxisCommands
 from cnc_ptp.client.made.channel_commands import ChannelCommands
 from cnc_ptp.client.made.plc_commands import PlcCommands
 from cnc_ptp.client.made.spindle_commands import SpindleCommands
+from cnc_ptp.client.several_jobs import TrajectoryJob
 from cnc_ptp.client.states import STATES, AxisState, ChannelState, SpindleState
 from cnc_ptp.client.stream import Stream
+from cnc_ptp.plc.trajectories import FOLLOW
 from cnc_ptp.protocol.blocks import CycleBlock, HandshakeRequest
 
 
@@ -105,6 +107,10 @@ class Plc(PlcCommands):
         self._session.on_handshake(None)
         self.auto_acknowledge(callback is None)
         self._session.on_handshake(callback)
+
+    def _trajectory_job(self, axes: Sequence[str], points: Any, options: Mapping[str, Any]) -> TrajectoryJob:
+        reply, given = self._asked(FOLLOW, {"axes": axes, "points": points, **options})
+        return TrajectoryJob(self._session, axes, FOLLOW, given, reply)
 
 
 Unit = Axis | Spindle | Channel | Plc

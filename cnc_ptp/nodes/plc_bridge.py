@@ -91,6 +91,10 @@ class PlcBridgeNode(UnitNode):
             kinds=self._kinds,
             largest_overrides=largest_overrides(machine),
             timeout=self._life_sign_timeout,
+            numbers={
+                **{name: axis.number for name, axis in machine.axes.items()},
+                **{name: spindle.number for name, spindle in machine.spindles.items()},
+            },
         )
         self.input_period = INPUT_PERIOD if self._free_run else 0.0
         self._jogs = JogTopics(self._warn)

@@ -390,7 +390,9 @@ def at_rest(block: CycleBlock) -> bool:
         return block.done
     if isinstance(block, AxisBlock):
         bits = block.status_bits[-1]
-        held = bits & StatusBit.HAS_JOB and (block.override_percent[-1] == 0.0 or bits & StatusBit.FEED_WITHHELD)
+        stands = block.state[-1] == AxisStateCode.CONTINUOUS_MOTION and block.target_velocity == 0.0
+        withheld = stands or block.override_percent[-1] == 0.0 or bits & StatusBit.FEED_WITHHELD
+        held = bits & StatusBit.HAS_JOB and withheld
         if bits & StatusBit.PROTECTED and block.state[-1] == AxisStateCode.SYNCHRONIZED_MOTION:
             return block.set_velocity[-1] == 0.0  # a slave: its master knows whether there is more to come
         waits = bool(held or (bits & StatusBit.EXT_SETPOINT and not bits & StatusBit.HAS_JOB))

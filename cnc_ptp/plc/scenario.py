@@ -67,6 +67,11 @@ _Loader.add_implicit_resolver("tag:yaml.org,2002:bool", _BOOL, list("tTfF"))
 _Loader.add_implicit_resolver("tag:yaml.org,2002:float", _FLOAT, list("-+0123456789."))
 
 
+def read_value(text: str) -> Any:
+    """A value as in a scenario. Raises yaml.YAMLError."""
+    return yaml.load(text, Loader=_Loader)
+
+
 def parse_scenario(text: str, file: str, kinds: Mapping[str, str], read: ReadFile | None = None) -> list[Entry]:
     """The entries in the order of their time (file order within one time).
 

@@ -137,6 +137,7 @@ class Unit(ABC):
         self._refuse_edge(name, by_client=not command.id)
         requests = self.requested(name, arguments)
         self._note(self._ask(name, requests, cycle) if requests else self.handler(name)(cycle, **arguments))
+        self._release_clients(name)
         if name == "upstream_lost":
             self.lost.add(arguments["source"])
             if arguments["source"] == PLC:
@@ -160,6 +161,13 @@ class Unit(ABC):
     def do_hold_stop(self, cycle: int, *, enabled: bool) -> None:
         """Holds the unit at its standstill, or no longer: the PLC and clients each their own hold."""
         (self._stop_holders.add if enabled else self._stop_holders.discard)(self._given_by)
+
+    def _release_clients(self, command: str) -> None:
+        """A reset, whoever gives it, ends the hold of clients: one that was killed cannot end its own."""
+        if command == "reset" and A_CLIENT in self._stop_holders:
+            self._stop_holders.discard(A_CLIENT)
+            text = f"{self.kind} {self.name}: reset ends MC_Stop of {A_CLIENT} (hold_stop)"
+            self._warning = "; ".join(filter(None, [self._warning, text]))
 
     def is_held_off(self, command: str, arguments: Mapping[str, Any]) -> bool:
         """The command would move the unit, which a held stop does not permit."""
@@ -295,6 +303,7 @@ class Unit(ABC):
         if rises:
             self._refuse_in_emergency(unit.command)
             self._note(self.handler(unit.command)(cycle))
+            self._release_clients(unit.command)
             self.overlay.carried_out(unit.name)
             command = Command(self.name, unit.command)
         if enabled:

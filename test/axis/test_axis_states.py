@@ -69,7 +69,7 @@ REFUSALS: Texts = {
     **refused(23027, ("move_superimposed",), EXTERNAL, "external setpoints are enabled"),
     **refused(
         23059,
-        ("move_superimposed", "compensation_start", "external_enable relative"),
+        ("compensation_start", "external_enable relative"),
         ADDING,
         "a superimposed motion is active",
     ),

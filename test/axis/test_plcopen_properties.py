@@ -40,7 +40,7 @@ moves = st.one_of(
     absolute,
     motions("move_relative", "distance", positions),
     motions("move_additive", "distance", positions),
-    motions("move_velocity", "velocity", st.one_of(st.floats(-V, -10.0), st.floats(10.0, V))),
+    motions("move_velocity", "velocity", st.one_of(st.just(0.0), st.floats(-V, -10.0), st.floats(10.0, V))),
 )
 additions = st.one_of(
     st.tuples(

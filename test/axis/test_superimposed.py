@@ -242,6 +242,121 @@ def test_without_its_feed_release_it_comes_to_rest_and_nothing_else_does() -> No
     assert bench.refusal("move_superimposed", distance=1.0) == refused(23058)
 
 
+# ---------------------------------------------------------------- one after the other (PLCopen: the new one counts)
+
+
+RAMP = 2.0 * (50.0 / 8000.0) ** 0.5
+"""Seconds from rest to 50 mm/s with OWN: 800 mm/s² are not reached."""
+
+
+def seconds_of(distance: float) -> float:
+    """From rest to rest with OWN: by four equal phases of jerk below 50 mm/s, otherwise with constant velocity."""
+    four = 4.0 * (distance / (2.0 * 8000.0)) ** (1.0 / 3.0)
+    return four if 8000.0 * (four / 4.0) ** 2 < 50.0 else RAMP + distance / 50.0
+
+
+@pytest.mark.parametrize("distance", [40.0, 3.0, 0.0, -60.0])
+@pytest.mark.parametrize("basic", [True, False])
+def test_a_second_one_takes_the_place_of_the_first(basic: bool, distance: float) -> None:
+    """At its constant velocity: a distance that counts from there, and the rest of the first one is never covered."""
+    bench, alone = axis_bench(), axis_bench()
+    for each in (bench, alone) if basic else ():
+        each.accepted("move_absolute", target=3000.0, **DYNAMICS)
+        each.run(200)
+    begin = bench.cycle
+    first = job(bench, "move_superimposed", distance=200.0, velocity_difference=50.0, **OWN)
+    bench.run(500)
+    covered = 0.5 * 50.0 * RAMP + 50.0 * (500 * CYCLE_TIME - RAMP)
+    at = bench.cycle
+    second = job(bench, "move_superimposed", distance=distance, velocity_difference=50.0, **OWN)
+    run_to_standstill(bench)
+    alone.run(bench.cycle - alone.cycle)
+    added = difference(bench, alone, begin)
+    assert added[500][0] == pytest.approx(covered, abs=1e-9) and added[500][1] == pytest.approx(50.0, abs=1e-9)
+    assert added[-1][0] == pytest.approx(covered + distance, abs=1e-9)
+    events = [event for event in told(bench) if event[0] in (first, second)]
+    assert events == [(first, ACTIVE), (first, ABORTED), (second, ACTIVE), (second, DONE)]
+    stopping = 0.5 * 50.0 * RAMP
+    seconds = RAMP + (distance - stopping) / 50.0 if distance > stopping else RAMP + seconds_of(stopping - distance)
+    assert end_of(bench, first).cycle == start_of(bench, second) == at
+    assert end_of(bench, second).cycle == at + int(np.ceil(seconds / CYCLE_TIME - 1e-9))
+    assert added[:, 0].max() <= max(covered + stopping, covered + distance) + 1e-9
+    assert_axis_smooth(bench, acceleration=(A if basic else 0.0) + 800.0, jerk=(J if basic else 0.0) + 8000.0)
+
+
+def test_a_second_one_counts_while_the_first_comes_to_rest() -> None:
+    """Behind halt_superimposed, too, and behind the end of the first as it ever did."""
+    bench = axis_bench()
+    bench.accepted("move_superimposed", distance=200.0, velocity_difference=50.0, **OWN)
+    bench.run(500)
+    bench.accepted("halt_superimposed")
+    bench.run(100)
+    where = bench.column("set_position")[-1] + CYCLE_TIME * bench.column("set_velocity")[-1]
+    halt, second = 2, job(bench, "move_superimposed", distance=30.0, velocity_difference=50.0, **OWN)
+    run_to_standstill(bench)
+    assert (halt, ABORTED) in told(bench) and told(bench)[-1] == (second, DONE)
+    assert bench.column("set_position")[-1] == pytest.approx(where + 30.0, abs=0.01)
+    assert_axis_smooth(bench, acceleration=800.0, jerk=8000.0)
+
+
+def test_a_weaker_ramp_leads_no_further_than_the_first_would_have() -> None:
+    """With 10 mm/s² alone it would need 125 mm to stop: the ramp of the first counts where that is stronger."""
+    bench = axis_bench(soft_limit_positive=60.0)
+    bench.accepted("move_superimposed", distance=59.0, velocity_difference=50.0, **OWN)
+    bench.run(1000)
+    weak = {"acceleration": 10.0, "deceleration": 10.0, "jerk": 100.0}
+    second = job(bench, "move_superimposed", distance=1.0, velocity_difference=5.0, **weak)
+    run_to_standstill(bench)
+    assert max(bench.column("set_position")) <= 59.0 and told(bench)[-1] == (second, DONE)
+    assert_axis_smooth(bench, acceleration=800.0, jerk=8000.0)
+
+
+def test_a_second_one_that_is_refused_leaves_the_first() -> None:
+    """Its end and its direction are checked from where the first one is; a slower one fits beside the same motion."""
+    bench = axis_bench(soft_limit_positive=1000.0, max_velocity=2000.0, reference_velocity=2000.0)
+    bench.accepted("move_absolute", target=900.0, **DYNAMICS | {"velocity": 1000.0})
+    bench.run(200)
+    first = job(bench, "move_superimposed", distance=100.0, velocity_difference=50.0, **OWN)
+    bench.run(500)
+    covered = 0.5 * 50.0 * RAMP + 50.0 * (500 * CYCLE_TIME - RAMP)
+    over = bench.refusal("move_superimposed", distance=100.0)
+    assert over[0] == 120002 and over[1]["target"] == pytest.approx(1000.0 + covered, abs=1e-9)
+    assert bench.refusal("move_superimposed", distance=1.0, velocity_difference=1500.0)[0] == 23004
+    bench.accepted("set_feed_release", forward=True, backward=False)
+    assert bench.refusal("move_superimposed", distance=-30.0) == refused(23058)
+    assert bench.refusal("move_superimposed", distance=1.0, velocity_difference=50.0, **OWN) == refused(23058)
+    bench.accepted("move_superimposed", distance=10.0, velocity_difference=20.0, **OWN)
+    run_to_standstill(bench)
+    assert (first, ABORTED) in told(bench)
+    assert bench.column("set_position")[-1] == pytest.approx(900.0 + covered + 10.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("count", [1, 7, 1000])
+def test_one_after_the_other_does_not_depend_on_the_size_of_blocks(count: int) -> None:
+    benches = axis_bench(count=10), axis_bench(count=count)
+    for bench in benches:
+        bench.accepted("move_absolute", target=300.0, **DYNAMICS)
+        for distance in (90.0, -20.0, 5.0):
+            bench.accepted("move_superimposed", distance=distance, velocity_difference=60.0, **OWN)
+            bench.run(137)
+        bench.run(3000)
+    assert benches[0].columns() == benches[1].columns()
+    assert told(benches[0]) == told(benches[1])
+
+
+def test_a_slave_and_an_axis_on_a_path_take_the_second_one_too() -> None:
+    bench = SlaveBench()
+    bench.do("y", "couple", master="x", factor=0.5)
+    bench.do("x", "move_absolute", target=1000.0, velocity=500.0)
+    bench.run(0.5)
+    bench.do("y", "move_superimposed", distance=400.0, velocity_difference=50.0, **OWN)
+    bench.run(0.5)
+    bench.do("y", "move_superimposed", distance=-5.0, velocity_difference=50.0, **OWN)
+    bench.run(4.0)
+    covered = 0.5 * 50.0 * RAMP + 50.0 * (0.51 - RAMP)
+    assert bench.position("y") == pytest.approx(500.0 + covered - 5.0, abs=1e-9)
+
+
 # ---------------------------------------------------------------- limits
 
 
@@ -334,7 +449,6 @@ def test_nothing_else_is_superimposed_meanwhile() -> None:
     bench.run(100)
     bench.accepted("move_superimposed", distance=100.0, velocity_difference=50.0)
     compensation = {"length": 200.0, "difference": 5.0, "process_velocity": 1000.0, "velocity_increase": 100.0}
-    assert bench.refusal("move_superimposed", distance=1.0) == refused(23059)
     assert bench.refusal("compensation_start", **compensation) == refused(23059)
     assert bench.refusal("external_enable", mode="relative") == refused(23059)
     bench.run(3000)

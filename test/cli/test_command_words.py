@@ -64,6 +64,21 @@ def test_texts_and_tables_travel_with_a_request():
     assert (row.cycle, row.position, row.velocity, row.acceleration, row.direction) == (1, 2.0, 3.0, 4.0, -1)
 
 
+def test_rows_are_typed_as_yaml():
+    words = ["axes=[x, y]", "points=[[0.6, [100, 50], [40, 0]], [1.2, [120.5, 0]]]", "path_tolerance=[1, 1e-1]"]
+    given = read("plc", "follow_trajectory", *words)
+    assert given == {
+        "axes": ["x", "y"],
+        "points": [[0.6, [100, 50], [40, 0]], [1.2, [120.5, 0]]],
+        "path_tolerance": [1, 0.1],
+    }
+    given = read("plc", "follow_trajectory", *words[:2], "goal_time=0.5")
+    request = request_of(services_of("plc")["follow_trajectory"], given)
+    assert [list(point.velocities) for point in request.points] == [[40.0, 0.0], []]
+    assert read("axis", "external_setpoints", "setpoints=[[10, 1.5, 0, 0, 1]]") == {"setpoints": [[10, 1.5, 0, 0, 1]]}
+    assert read("axis", "couple_cam", "master=x", "table=[[0, 1], [2, 3]]")["table"] == [[0, 1], [2, 3]]
+
+
 @pytest.mark.parametrize("row", [[0.5, [1, 2]], [0.5, [1, 2], [3, 4]], [0.5, [1, 2], [3, 4], [5, 6]]])
 def test_a_trajectory_travels_with_a_request(row):
     given = {"axes": ["x", "c"], "points": [row], "path_tolerance": [0.5, 1.0]}

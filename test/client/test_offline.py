@@ -18,7 +18,16 @@ from client_stories import BLOCKS_EXPECTED, EXPECTED, block_story, refusal, stor
 from graph_support import verified
 from machine_support import ROOT
 
-from cnc_ptp.client import AxisStateCode, ChannelStateCode, CncError, JobStatus, Machine, MC_MoveAbsolute, UnknownUnit
+from cnc_ptp.client import (
+    AxisStateCode,
+    ChannelStateCode,
+    CncError,
+    JobStatus,
+    Machine,
+    MC_MoveAbsolute,
+    MC_Stop,
+    UnknownUnit,
+)
 from cnc_ptp.recording.reader import read_recording
 
 MILL = ROOT / "config" / "mill.yaml"
@@ -42,7 +51,7 @@ def test_the_story_is_recorded_and_replays_to_the_bit(tmp_path: Path) -> None:
         assert story(m, tmp_path) == EXPECTED
     recorded = verified(tmp_path / "a.mcap")
     assert recorded.complete and recorded.states["/x/state"]["set_velocity"][-1] == 0.0
-    refused = next(record for record in recorded.commands if record.error_id == 120002)
+    refused = next(record for record in recorded.commands if record.command == "move_absolute" and record.error_id)
     assert refused.values == {"target": 100000.0, "limit": 300.0} and refused.job == 0
     assert [record.job for record in recorded.commands if record.command == "start" and record.target == "s"] == [1]
 
@@ -459,3 +468,70 @@ def test_time_is_that_of_the_machine(m: Machine) -> None:
     begin = time.monotonic()
     m.run_for(2.0)
     assert m.time == pytest.approx(2.01) and time.monotonic() - begin < 300.0
+
+
+# ---------------------------------------------------------------- trajectories, MC_Stop
+
+
+TOGETHER = [(0.5, [20.0, -10.0], [0.0, 0.0])]
+
+
+def test_a_trajectory_is_one_job(ptp: Machine) -> None:
+    job = ptp.follow([ptp.x, "y"], TOGETHER)
+    assert (job.status, job.ended, job.reached, repr(job)) == (
+        None,
+        False,
+        False,
+        "<follow_trajectory of x, y: not begun>",
+    )
+    asyncio.run(job.wait_async(10.0))
+    assert repr(job) == "<follow_trajectory of x, y: done>" and {*job.jobs} == {"x", "y"} and job.done
+    assert (ptp.x.state.set_position, ptp.y.state.set_position) == (20.0, -10.0)
+    assert refusal(lambda: job.wait(nan))[1] == (
+        "plc plc: follow_trajectory: wait refused: timeout = nan is not a number; it continues"
+    )
+
+
+def test_a_trajectory_is_halted_as_a_whole(ptp: Machine) -> None:
+    job = ptp.follow(["x", "y"], [(5.0, [200.0, 100.0], [0.0, 0.0])])
+    ptp.run_for(1.0)
+    halt = job.cancel()
+    assert repr(halt) == "<halt of x, y: active>" and halt.cancel() is halt and not halt.reached
+    halt.wait(5.0)
+    assert halt.done and job.status is JobStatus.ABORTED and 0.0 < ptp.y.state.set_position < 100.0
+    ptp.follow(["y", "x"], [(1.0, [0.0, 0.0], [0.0, 0.0])]).wait(10.0)
+
+
+def test_what_goes_wrong_on_the_way_is_what_a_trajectory_raises(ptp: Machine) -> None:
+    """An emergency stop of y: x was stopped for it, and the error of y counts."""
+    job = ptp.follow(["x", "y"], [(5.0, [200.0, 100.0], [0.0, 0.0])])
+    ptp.run_for(1.0)
+    ptp.plc.emergency_stop(True)
+    number, text, _ = refusal(lambda: job.wait(10.0))
+    assert (number, text) == (26168, "axis x: emergency stop; the axis stops on its emergency ramp (ErrorStop)")
+
+
+def test_a_trajectory_whose_answer_is_not_seen(ptp: Machine) -> None:
+    seen = ptp._session.link.seen
+    seen.take_record = lambda record: None  # type: ignore[method-assign]
+    job = ptp.follow(["x", "y"], TOGETHER)
+    ptp.run_for(0.1)
+    seen._gaps["y"] = job.cycle + 10
+    assert refusal(lambda: job.wait(1.0))[:2] == (
+        26175,
+        "axis y: follow_trajectory was answered in blocks that this client has not got; how it has ended is not known",
+    )
+
+
+def test_a_machine_that_is_closed_lets_go_what_mc_stop_holds(tmp_path: Path) -> None:
+    with Machine.offline(PTP, record=tmp_path / "a.mcap") as m:
+        stop = MC_Stop(m.x)
+        for _ in m.plc_cycles():
+            stop(True)
+            if stop.done:
+                break
+    given = [(record.command, record.arguments_json) for record in verified(tmp_path / "a.mcap").commands]
+    assert [each for each in given if each[0] == "hold_stop"] == [
+        ("hold_stop", '{"enabled": true}'),
+        ("hold_stop", '{"enabled": false}'),
+    ]

@@ -257,6 +257,34 @@ def test_a_client_that_is_killed_leaves_a_machine_that_stops_on_its_ramps(ros_do
     assert [c.command for c in recorded.commands if c.target == "x"] == ["move_absolute", "stop"]
 
 
+STOPS = """
+import os, signal, sys
+from cnc_ptp.client import Machine, MC_Stop
+with Machine.connect(timeout=30.0) as m:
+    stop = MC_Stop(m.x)
+    for _ in m.plc_cycles():
+        stop(True)
+        if stop.done:
+            break
+    if sys.argv[1] == "killed":
+        os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+@pytest.mark.parametrize("end", ["killed", "closed"])
+def test_a_client_that_ends_while_its_mc_stop_holds_locks_no_axis_for_ever(m, end):
+    """Of a client that was killed an operator's reset ends the hold; one that closes its machine lets go itself."""
+    m.wait_until(lambda: m.x.state.set_velocity == 0.0, timeout=30.0)
+    done = subprocess.run([sys.executable, "-c", STOPS, end], timeout=120, check=False)
+    assert done.returncode == (-signal.SIGKILL if end == "killed" else 0)
+    if end == "killed":
+        held = "MC_Stop of a client holds the axis while its execute is true (hold_stop); nothing was changed"
+        number, text, *_ = refusal(lambda: m.x.move_relative(1))
+        assert (number, text) == (22165, f"axis x: move_relative refused: {held}")
+        assert m.x.reset().warning == "axis x: reset ends MC_Stop of a client (hold_stop)"
+    m.x.move_relative(1).wait(30.0)
+
+
 def test_a_stopped_client_does_not_know_how_its_job_has_ended(m, mill):
     """SIGSTOP for longer than DDS keeps blocks: here they are left out where they come in."""
     link = m._session.link

@@ -158,6 +158,21 @@ def test_an_edge_and_an_external_command(plc):
     plc.say("x", valid=False)
 
 
+def test_external_commands_beside_motions(plc):
+    """G167 of a spindle, and a coupling by the logical number of a master that there is not."""
+    command = msg.HliSpindleCommand(semaphore=True, type=msg.HliSpindleCommand.OVERRIDE_OFF)
+    plc.say("s", external=command)
+    taken = lambda status: status.external.count_r == 1 and not status.external.command_semaphore  # noqa: E731
+    assert plc.sees("s", taken, "taken").external.error_id == 0
+    plc.say("s", valid=False)
+    before = plc.sees("x", lambda status: not status.external.command_semaphore, "its status").external.count_r
+    command = msg.HliAxisCommand(semaphore=True, type=msg.HliAxisCommand.COUPLE, factor=0.5, master=77)
+    plc.say("x", external=command)
+    status = plc.sees("x", lambda status: status.external.count_r == before + 1, "refused")
+    assert status.external.error_id == 26164
+    plc.say("x", valid=False)
+
+
 def test_functions_wait_for_the_plc(plc, tmp_path):
     path = tmp_path / "job.nc"
     path.write_text("%job\nN10 M08\nN20 G01 X10 F3000\nM30\n")

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 import signal
+import subprocess
 
 import numpy as np
 import pytest
 import rclpy
 from builtin_interfaces.msg import Duration
 from client_support import Client
-from graph_support import PTP, Running, run, states_equal, verified
+from graph_support import PTP, TIMEOUT, Running, command, kill, run, states_equal, verified
 from rclpy.action import ActionClient
 from scipy.interpolate import CubicHermiteSpline
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
@@ -203,11 +204,75 @@ def test_the_service_takes_mm(client):
     )
 
 
+def test_the_command_line_takes_rows(client):
+    start = [client.blocks[axis][-1].set_position[-1] for axis in ("x", "y")]
+    points = [[0.5, [start[0] + 3.0, start[1] - 2.0], [0, 0]]]
+    done = subprocess.run(
+        command("do", "plc", "follow_trajectory", "axes=[x, y]", f"points={points}", "path_tolerance=[5e0, 5]"),
+        capture_output=True, text=True, timeout=TIMEOUT, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    client.wait_last("y", lambda block: abs(block.set_position[-1] - start[1] + 2.0) < 1e-9, "at the target")
+    client.at_rest("x", "y")
+    assert client.blocks["x"][-1].set_position[-1] == pytest.approx(start[0] + 3.0, abs=1e-9)
+
+
 def test_the_recording_is_computed_again(graph, client, recording):
     client.wait_blocks("plc", 10)
     graph.process.send_signal(signal.SIGINT)
     graph.finish(expect=1)
     verified(recording)
+
+
+ENDS = {
+    "axis lost": (26101, "axis y: its node is lost; the other axes stop on their ramps"),
+    "another command": (0, "axis y: the trajectory was aborted by a stop or another command; all axes have stopped"),
+    "without power": (0, "axis y: the trajectory was aborted by a stop or another command; all axes have stopped"),
+    "emergency stop": (26168, "axis x: emergency stop; the axis stops on its emergency ramp (ErrorStop)"),
+    "end of the run": (0, "axis x: the trajectory was aborted by a stop or another command; all axes have stopped"),
+}
+
+
+@pytest.mark.parametrize("end", ENDS)
+def test_a_trajectory_that_ends_in_the_middle(ros_domain, tmp_path, end):
+    """Number and text of the result; the axes that are still there come to rest on their ramps."""
+    graph = Running(PTP, "--duration", 300, "--record", tmp_path / "run.mcap")
+    try:
+        nodes = dict(graph.wait_for_nodes(7))
+        process.initialise()
+        client = TrajectoryClient(read_machine(str(PTP)))
+        client.start()
+        client.wait_blocks("x", 1)
+        handle = client.follow(["x", "y"], [(20.0, [1.0, 1.0], [0.0, 0.0])])
+        client.wait_last("y", lambda block: block.set_velocity[-1] > 10.0, "in motion")
+        interrupt(end, graph, nodes, client)
+        result = client.result(handle)
+        assert (result.success, result.error_code) == (False, Result.ABORTED)
+        assert (result.error_id, result.error_string) == ENDS[end]
+        client.wait_last("x", lambda block: block.set_velocity[-1] == 0.0, "at rest")
+        if end not in ("axis lost", "end of the run"):
+            graph.process.send_signal(signal.SIGINT)
+        client.destroy_node()
+        client.executor_of_test.shutdown()
+        rclpy.try_shutdown()
+        graph.finish(expect=1)
+    finally:
+        graph.end()
+    velocity = verified(tmp_path / "run.mcap", whole=False).states["/x/state"]["set_velocity"]
+    assert velocity.max() > 10.0 and velocity[-1] == 0.0 and np.abs(np.diff(velocity)).max() <= 20.0 * 1.001
+
+
+def interrupt(end, graph, nodes, client):
+    if end == "axis lost":
+        kill(nodes["y"])
+    elif end == "another command":
+        client.done("y", "stop")
+    elif end == "without power":
+        client.done("y", "power", enabled=False)
+    elif end == "emergency stop":
+        client.done("plc", "emergency_stop", enabled=True)
+    else:
+        graph.process.send_signal(signal.SIGINT)
 
 
 @pytest.mark.parametrize("options", [[], ["--composed"]], ids=str)

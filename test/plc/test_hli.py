@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 from hli_support import AXIS, SPINDLE, message
-from machine_support import MILL, MachineBench
+from machine_support import MILL, PTP, MachineBench
 from spindle_support import two_gears
 
 from cnc_ptp.machine.offline import OfflineMachine
@@ -33,7 +33,8 @@ class Machine(MachineBench):
         assert isinstance(plc, PlcUnit)
         self.plc = plc
         kinds = unit_kinds(machine)
-        self.hli = Hli(plc, kinds=kinds, largest_overrides=dict.fromkeys(kinds, 100.0), timeout=0.5)
+        numbers = {name: unit.number for name, unit in (*machine.axes.items(), *machine.spindles.items())}
+        self.hli = Hli(plc, kinds=kinds, largest_overrides=dict.fromkeys(kinds, 100.0), timeout=0.5, numbers=numbers)
         self._kinds = kinds
         self.now = 0.0
 
@@ -111,6 +112,78 @@ def test_external_commands_of_a_spindle_are_counted_for_the_plc() -> None:
     shown = bench.shown("s")
     assert (shown["set_speed_rpm"], shown["set_speed_hli"], shown["mode"]) == (600.0, 3_600_000, 2)
     assert (shown["plc_commands"], shown["plc_acknowledged"], shown["stopped"]) == (1, 1, False)
+
+
+def external(bench: Machine, unit: str, **fields: float) -> None:
+    """One external command by its semaphore, and the block in which it is carried out."""
+    of = SPINDLE if unit == "s" else AXIS
+    for semaphore in (1, 0):
+        bench.say(unit, external={**of, **fields, "semaphore": semaphore})
+        bench.run(0.03)
+
+
+def test_an_external_command_suppresses_the_override_of_a_spindle() -> None:
+    """G167 and G166: 600 rpm although the override is 50 %."""
+    bench = Machine(end_when_idle=False).run(0.1)
+    bench.give("s", "set_override", percent=50.0)
+    external(bench, "s", type=2)
+    bench.run(1.0)
+    assert bench.last("s").set_speed_rpm[-1] == 300.0
+    external(bench, "s", type=8)
+    bench.run(1.0)
+    assert bench.last("s").set_speed_rpm[-1] == 600.0
+    external(bench, "s", type=9)
+    bench.run(1.0)
+    assert bench.last("s").set_speed_rpm[-1] == 300.0 and bench.shown("s")["plc_commands"] == 1
+
+
+def test_an_external_command_limits_a_spindle() -> None:
+    bench = Machine(end_when_idle=False).run(0.1)
+    external(bench, "s", type=10, speed=200.0)
+    external(bench, "s", type=2, speed=900.0)
+    bench.run(1.0)
+    assert bench.last("s").set_speed_rpm[-1] == 200.0
+    external(bench, "s", type=1)
+    bench.run(1.0)
+    external(bench, "s", type=11)
+    external(bench, "s", type=2, speed=900.0)
+    bench.run(1.0)
+    assert bench.last("s").set_speed_rpm[-1] == 900.0
+
+
+def test_external_commands_couple_and_decouple_an_axis() -> None:
+    """By the logical number of the master; the coupling outlives the PLC, which is free to go."""
+    bench = Machine(machine=PTP, end_when_idle=False).run(0.1)
+    external(bench, "y", type=15, factor=0.5, master=PTP.axes["x"].number)
+    assert bench.last("y").master == "x" and bench.shown("y")["external"]["error_id"] == 0
+    assert not bench.shown("y")["held"]
+    external(bench, "x", type=3, position=100.0, velocity=200.0)
+    bench.hli.watch(bench.now + 0.51)
+    bench.run(2.0)
+    assert not [text for text in bench.texts() if "HLI of y" in text] and bench.last("y").master == "x"
+    external(bench, "y", type=17, factor=2.0)
+    external(bench, "x", type=1)
+    external(bench, "y", type=16)
+    assert bench.last("y").master == ""
+    external(bench, "y", type=15, factor=0.5, master=99)
+    assert bench.shown("y")["external"]["error_id"] == 26164
+    reason = "master = 99 is the logical number (P-AXIS-00016) of no axis"
+    assert bench.texts()[-1] == f"26164 plc: HLI of y: external command: {reason}; nothing was changed"
+
+
+def test_a_superimposed_motion_ends_with_its_plc_and_the_motion_below_goes_on() -> None:
+    bench = Machine(machine=PTP, end_when_idle=False).run(0.1)
+    bench.give("x", "move_absolute", target=500.0, velocity=100.0)
+    bench.run(0.5)
+    external(bench, "x", type=10, position=400.0, velocity=20.0)
+    bench.run(0.5)
+    assert bench.shown("x")["holder"] == "p1"
+    bench.hli.watch(bench.now + 0.51)
+    bench.run(8.0)
+    assert [record.command for record in bench.records if record.target == "x"][-1] == "halt_superimposed"
+    assert 500.0 + 0.5 * 20.0 < bench.position("x") < 500.0 + 20.0
+    text = "no message of 'p1' for 500 ms; its motion is halted; its values hold until others command them"
+    assert bench.texts() == [f"26165 plc: HLI of x: {text}, and another PLC may take it"]
 
 
 # ---------------------------------------------------------------- functions

@@ -10,9 +10,11 @@ import pytest
 from hli_support import AXIS, SPINDLE, message
 
 from cnc_ptp.machine.silence import patience_of
-from cnc_ptp.plc.hli.messages import control_message, external_command
+from cnc_ptp.plc.hli.external_commands import external_command
+from cnc_ptp.plc.hli.messages import control_message
 from cnc_ptp.plc.hli.object_control import ObjectControl
 from cnc_ptp.protocol.blocks import AxisBlock, Command, CommandAnswer, JobEvent
+from cnc_ptp.protocol.commands import COMMANDS
 from cnc_ptp.protocol.control_units import CONTROL_UNITS
 from cnc_ptp.protocol.jobs import JobStatus
 
@@ -342,10 +344,35 @@ def test_the_same_message_again_is_only_heard() -> None:
         ({"type": 7}, "new_target", {"target": 12.5}),
         ({"type": 8}, "home", {"position": 12.5}),
         ({"type": 8, "position": 0.0}, "home", {}),
+        ({"type": 3, "buffer_mode": 2}, "move_absolute", {"target": 12.5, "buffer_mode": "buffered"}),
+        ({"type": 4, "buffer_mode": 6}, "move_relative", {"distance": 12.5, "buffer_mode": "blending_high"}),
+        ({"type": 6, "velocity": 5.0, "buffer_mode": 2}, "move_velocity", {"velocity": 5.0, "buffer_mode": "buffered"}),
+        ({"type": 9, "velocity": 5.0}, "move_additive", {"distance": 12.5, "velocity": 5.0}),
+        ({"type": 10, "velocity": 5.0}, "move_superimposed", {"distance": 12.5, "velocity_difference": 5.0}),
+        ({"type": 10, "buffer_mode": 9, "jerk": 2.0}, "move_superimposed", {"distance": 12.5, "jerk": 2.0}),
+        ({"type": 11}, "halt_superimposed", {}),
+        (
+            {"type": 12, "velocity": 5.0, "activation_position": 7.0},
+            "new_velocity_and_target",
+            {"target": 12.5, "velocity": 5.0, "activation_position": 7.0},
+        ),
+        ({"type": 13, "deceleration": 9.0}, "emergency_stop", {"deceleration": 9.0}),
+        ({"type": 14}, "set_position", {"position": 12.5}),
+        ({"type": 15, "factor": 0.5, "master": 2}, "couple", {"factor": 0.5, "master": "y"}),
+        ({"type": 16}, "decouple", {}),
+        ({"type": 17, "factor": -2.0}, "set_coupling_factor", {"factor": -2.0}),
+        ({"type": 18}, "set_feedforward", {"enabled": True}),
+        ({"type": 18, "weight": 80.0}, "set_feedforward", {"enabled": True, "weight_percent": 80.0}),
+        ({"type": 19, "weight": 80.0}, "set_feedforward", {"enabled": False}),
+        ({"type": 20}, "reset_feedforward", {}),
+        ({"type": 21}, "set_friction_compensation", {"enabled": True}),
+        ({"type": 22}, "set_friction_compensation", {"enabled": False}),
     ],
 )
 def test_external_commands_of_an_axis(changes: Mapping[str, float], command: str, arguments: Any) -> None:
-    assert external_command("axis", "x", {**AXIS, **changes}) == Command("x", command, arguments)
+    given = external_command("axis", "x", {**AXIS, **changes}, {1: "x", 2: "y"})
+    assert given == Command("x", command, arguments)
+    assert arguments.keys() <= COMMANDS["axis"][command].keys()
 
 
 @pytest.mark.parametrize(
@@ -364,7 +391,39 @@ def test_external_commands_of_an_axis(changes: Mapping[str, float], command: str
 )
 def test_external_commands_of_a_spindle(changes: Mapping[str, float], command: str, arguments: Any) -> None:
     expected = Command("s", command, {"source": "plc", **arguments})
-    assert external_command("spindle", "s", {**SPINDLE, **changes}) == expected
+    assert external_command("spindle", "s", {**SPINDLE, **changes}, {}) == expected
+
+
+@pytest.mark.parametrize(
+    ("changes", "command", "arguments"),
+    [
+        ({"type": 8}, "suppress_override", {"enabled": True}),
+        ({"type": 9}, "suppress_override", {"enabled": False}),
+        ({"type": 10}, "set_limits", {"max_speed_rpm": 600.0}),
+        (
+            {"type": 10, "speed": 0.0, "min_speed": 5.0, "acceleration": 9.0},
+            "set_limits",
+            {"min_speed_rpm": 5.0, "max_acceleration": 9.0},
+        ),
+        ({"type": 11}, "reset_limits", {}),
+        ({"type": 12, "master": 7}, "couple", {"master": "s2"}),
+        (
+            {"type": 12, "master": 7, "factor_num": -1.0, "factor_den": 2.0},
+            "couple",
+            {"master": "s2", "factor_num": -1.0, "factor_den": 2.0},
+        ),
+        ({"type": 13}, "decouple", {}),
+        ({"type": 14}, "set_feedforward", {"enabled": True}),
+        ({"type": 15}, "set_feedforward", {"enabled": False}),
+        ({"type": 16}, "reset_feedforward", {}),
+    ],
+)
+def test_external_commands_of_a_spindle_that_count_at_once(
+    changes: Mapping[str, float], command: str, arguments: Any
+) -> None:
+    given = external_command("spindle", "s", {**SPINDLE, **changes}, {7: "s2"})
+    assert given == Command("s", command, arguments)
+    assert arguments.keys() <= COMMANDS["spindle"][command].keys()
 
 
 def test_an_external_command_is_taken_by_the_semaphore() -> None:
@@ -395,8 +454,10 @@ def test_an_external_command_before_the_one_before_was_taken() -> None:
 @pytest.mark.parametrize(
     ("changes", "reason"),
     [
-        ({"type": 0}, "type = 0 is not within 1 ... 8"),
-        ({"type": 9}, "type = 9 is not within 1 ... 8"),
+        ({"type": 0}, "type = 0 is not within 1 ... 22"),
+        ({"type": 23}, "type = 23 is not within 1 ... 22"),
+        ({"buffer_mode": 7}, "buffer_mode = 7 is not within 0 ... 6"),
+        ({"type": 15, "factor": 1.0, "master": 9}, "master = 9 is the logical number (P-AXIS-00016) of no axis"),
         ({"position": math.nan}, "position = nan is not finite"),
     ],
 )

@@ -102,6 +102,37 @@ def test_plc_and_clients_hold_each_on_their_own() -> None:
     assert not bench.units["x"].stop_held
 
 
+@pytest.mark.parametrize("by_plc", [False, True])
+@pytest.mark.parametrize(("unit", "move"), [("x", "home"), ("s", "home")])
+def test_a_reset_ends_the_hold_of_clients_and_not_that_of_the_plc(unit: str, move: str, by_plc: bool) -> None:
+    """A client that was killed while its MC_Stop held the unit cannot end its hold; an operator can."""
+    bench = MachineBench(machine=MILL, end_when_idle=False).run(0.05)
+    assert bench.give(unit, "hold_stop", enabled=True).accepted
+    assert bench.give(unit, move).error_id == 22165
+    if by_plc:
+        bench.units["plc"].input(Command(unit, "reset"))  # type: ignore[attr-defined]
+        bench.run(0.05)
+        reset = next(record for record in bench.records if record.command == "reset")
+    else:
+        reset = bench.give(unit, "reset")
+    kind = "axis" if unit == "x" else "spindle"
+    assert reset.message == f"{kind} {unit}: reset ends MC_Stop of a client (hold_stop)"
+    assert bench.give(unit, move).accepted
+    bench.run(0.05)
+    bench.units["plc"].input(Command(unit, "hold_stop", {"enabled": True}))  # type: ignore[attr-defined]
+    bench.run(0.05)
+    assert bench.give(unit, "reset").accepted and bench.give(unit, move).error_id == 22165
+
+
+def test_a_reset_of_the_hli_ends_the_hold_of_clients_too() -> None:
+    bench = MachineBench(machine=PTP, end_when_idle=False).run(0.05)
+    bench.give("x", "hold_stop", enabled=True)
+    arguments = {"control_unit": "reset", "enabled": True, "value": 1.0, "holder": "p1"}
+    bench.units["plc"].input(Command("x", "overlay", arguments))  # type: ignore[attr-defined]
+    bench.run(0.05)
+    assert bench.give("x", "home").accepted
+
+
 @pytest.mark.parametrize("command", sorted(HELD_OFF["axis"]))
 def test_each_motion_of_an_axis_that_is_held_is_refused(command: str) -> None:
     bench = AxisBench()

@@ -178,6 +178,47 @@ def test_a_superimposed_motion_aborts_nothing_and_adds_its_distance() -> None:
     assert bench.position("x") == pytest.approx(540.0, abs=1e-9)
 
 
+def test_a_second_superimposed_motion_aborts_the_first_and_only_that() -> None:
+    """The first has gone about 40 mm of its 400 then: the axis ends 30 mm beyond what it has gone."""
+
+    def plan(n: int) -> dict[str, dict[str, Any]]:
+        return {
+            "basic": {"execute": n >= 10, "position": 500.0, **DYNAMICS},
+            "first": {"execute": n >= 30, "distance": 400.0, "velocity_difference": 200.0},
+            "second": {"execute": n >= 60, "distance": 30.0, "velocity_difference": 200.0},
+        }
+
+    bench, plc = run({"basic": MC_MoveAbsolute, "first": MC_MoveSuperimposed, "second": MC_MoveSuperimposed}, plan)
+    alone, _ = run({"basic": MC_MoveAbsolute}, lambda n: {"basic": plan(n)["basic"]})
+    assert plc.told("basic") == ["", "busy", "busy active", "done"]
+    assert plc.told("first") == ["", "busy", "busy active", "command_aborted"]
+    assert plc.told("second") == ["", "busy", "busy active", "done"]
+    assert plc.seen[61] == {"basic": "busy active", "first": "command_aborted", "second": "busy active"}
+    covered = bench.column("x", "set_position")[600] - alone.column("x", "set_position")[600]
+    assert bench.position("x") == pytest.approx(500.0 + covered + 30.0, abs=1e-9)
+
+
+def test_at_velocity_0_a_block_is_in_velocity_until_another_aborts_it() -> None:
+    class OfX(Blocks):
+        def cycle(self, io: Any) -> None:
+            super().cycle(io)
+            in_velocity.append(self.blocks["zero"].in_velocity)
+
+    in_velocity: list[bool] = []
+    plan: Plan = lambda n: {  # noqa: E731
+        "move": {"execute": n >= 10, "velocity": 300.0},
+        "zero": {"execute": n >= 60, "velocity": 0.0},
+        "back": {"execute": n >= 150, "position": 0.0, **DYNAMICS},
+    }
+    blocks = {"move": MC_MoveVelocity, "zero": MC_MoveVelocity, "back": MC_MoveAbsolute}
+    bench = PlcBench(lambda io: OfX(io, blocks, plan)).run(4.0)
+    assert bench.plc.told("move") == ["", "busy", "busy active", "command_aborted"]
+    assert bench.plc.told("zero") == ["", "busy", "busy active", "command_aborted"]
+    assert in_velocity[149] and bench.plc.states[149] == S.CONTINUOUS_MOTION
+    assert not in_velocity[61] and not in_velocity[152]
+    assert bench.plc.told("back")[-1] == "done" and bench.position("x") == 0.0
+
+
 def test_a_new_position_is_the_origin_of_what_follows() -> None:
     def plan(n: int) -> dict[str, dict[str, Any]]:
         return {

@@ -69,6 +69,7 @@ AXIS_ROWS: dict[str, tuple[str, dict[str, Any]]] = {
         )
         for mode in ("", "aborting", "buffered", "blending_next")
     },
+    "move_velocity 0 aborting": ("move_velocity", {"velocity": 0.0, "buffer_mode": "aborting"}),
     "move_superimposed": ("move_superimposed", {"distance": 5.0, "velocity_difference": 10.0}),
     "halt_superimposed": ("halt_superimposed", {}),
     "set_position": ("set_position", {"position": 3.0, "relative": True}),
@@ -193,6 +194,11 @@ def halting(bench: AxisBench, command: str = "halt") -> None:
     after(command, 10)(bench)
 
 
+def buffering(bench: AxisBench) -> None:
+    after("move_absolute", 100, target=300.0, **FAST)(bench)
+    after("move_absolute", 10, target=350.0, buffer_mode="buffered", **FAST)(bench)
+
+
 def error_stop(bench: AxisBench) -> None:
     after("upstream_lost", 100, source="plc")(bench)
     bench.unit.lost.clear()
@@ -212,7 +218,9 @@ AXIS = [
             after("begin_trajectory", 50, points=[[0.5, 20.0, 0.0]]),
         ),
         ("DiscreteMotion: superimposed", S.DISCRETE_MOTION, after("move_superimposed", 50, distance=30.0)),
+        ("DiscreteMotion: another waits", S.DISCRETE_MOTION, buffering),
         ("ContinuousMotion", S.CONTINUOUS_MOTION, after("move_velocity", 100, velocity=50.0)),
+        ("ContinuousMotion: velocity 0", S.CONTINUOUS_MOTION, after("move_velocity", 100, velocity=0.0)),
         ("ContinuousMotion: jog", S.CONTINUOUS_MOTION, after("jog", 100, velocity=50.0)),
         ("ContinuousMotion: external", S.CONTINUOUS_MOTION, after("external_enable", 10, mode="absolute")),
         ("SynchronizedMotion: path", S.SYNCHRONIZED_MOTION, on_path),

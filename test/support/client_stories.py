@@ -33,6 +33,13 @@ REFUSED = (
 )
 
 
+REFUSED_TRAJECTORY = (
+    120002,
+    "axis x: begin_trajectory refused: position 400 mm at 30 s is beyond the positive soft limit 300.0 mm (P-AXIS-00178); "
+    "nothing was changed",
+)
+
+
 def refusal(call) -> tuple[int, str, dict]:
     """Number, text and values of what a call raises."""
     try:
@@ -75,6 +82,18 @@ def story(m: Machine, folder: Path) -> list[object]:
     m.x.move_relative(-20).wait(30)
     m.y.decouple()
     seen.append(m.y.state.set_position)
+    there = [m.x.state.set_position, m.y.state.set_position]
+    together = m.follow([m.x, "y"], [(0.5, [p + 10.0 for p in there], [0.0, 0.0])], path_tolerance=[50, 50]).wait(30)
+    seen += [together.status, [*together.jobs], m.x.state.set_position - there[0], m.y.state.set_position - there[1]]
+    together = m.follow(["y", "x"], [(5.0, [*reversed(there)], [0.0, 0.0])])
+    m.wait_until(lambda: together.status is JobStatus.ACTIVE and m.x.state.set_velocity < -1.0, timeout=30)
+    seen.append(together.cancel().wait(30).status)
+    seen += [together.status, refusal(lambda: together.wait(1))[0]]
+    seen.append(refusal(lambda: m.follow(["x", "y"], [(30.0, [400.0, 0.0], [0.0, 0.0])]).wait(30))[:2])
+    seen.append(refusal(lambda: m.follow(["x", "q"], [(1.0, [0.0, 0.0])]))[0])
+    resting = m.x.move_velocity(30).wait(30)
+    seen += [m.x.state.set_velocity, m.x.move_velocity(0, buffer_mode="aborting").wait(30).reached, resting.status]
+    m.x.halt().wait(30)
     seen.append(refusal(lambda: m.x.move_absolute(1e5)))
     seen.append(refusal(lambda: m.y.couple("x", 0.0)))
     seen.append(refusal(lambda: m.channel.load(str(folder / "none.nc")))[0])
@@ -88,6 +107,11 @@ EXPECTED = [
     [("M", 8, 5), ("M", 9, 7)], True, 1.0, 50.0, 15.0,
     45.0, 0.0,
     -10.0,
+    JobStatus.DONE, ["x", "y"], 10.0, 10.0,
+    JobStatus.DONE, JobStatus.ABORTED, 26173,
+    REFUSED_TRAJECTORY,
+    23064,
+    30.0, True, JobStatus.ABORTED,
     REFUSED,
     (23043, "axis y: couple refused: factor = 0 must be different from 0; nothing was changed", {"argument": "factor", "value": 0.0}),
     26110,

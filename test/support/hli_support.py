@@ -64,8 +64,12 @@ class HliBench:
 
 AXIS = {
     "semaphore": 1, "type": 3, "position": 12.5, "velocity": 0.0, "acceleration": 0.0, "deceleration": 0.0, "jerk": 0.0,
+    "activation_position": 0.0, "factor": 0.0, "weight": 0.0, "master": 0, "buffer_mode": 0,
 }  # fmt: skip
-SPINDLE = {"semaphore": 1, "type": 2, "speed": 600.0, "position": 90.0, "direction": 0, "gear": 2}
+SPINDLE = {
+    "semaphore": 1, "type": 2, "speed": 600.0, "position": 90.0, "direction": 0, "gear": 2, "min_speed": 0.0,
+    "acceleration": 0.0, "factor_num": 0.0, "factor_den": 0.0, "weight": 0.0, "master": 0,
+}  # fmt: skip
 """External commands: to 12.5 mm; M03 at 600 rpm."""
 
 

@@ -383,8 +383,8 @@ CASES: list[tuple[int, Ask, str, dict[str, Any]]] = [
     # superimposed and buffered motion
     (
         23059,
-        of_unit(adding, "move_superimposed", distance=1.0),
-        "axis x: move_superimposed refused: a superimposed motion is active; nothing was changed",
+        of_unit(adding, "external_enable", mode="relative"),
+        "axis x: external_enable refused: a superimposed motion is active; nothing was changed",
         {},
     ),
     (
@@ -413,12 +413,6 @@ CASES: list[tuple[int, Ask, str, dict[str, Any]]] = [
         "axis x: move_velocity refused: the axis is in Stopping, it must be in Standstill, DiscreteMotion or "
         "ContinuousMotion; nothing was changed",
         {"state": "Stopping"},
-    ),
-    (
-        23003,
-        of_x("move_velocity", velocity=0.0),
-        "axis x: move_velocity refused: velocity = 0 must be different from 0; halt the axis; nothing was changed",
-        {"argument": "velocity", "value": 0.0},
     ),
     (
         22001,

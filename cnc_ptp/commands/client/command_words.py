@@ -1,4 +1,4 @@
-"""Commands as people type them: `move_absolute target=100 velocity=50`, `mdi "G1 X10 F500"`."""
+"""Commands as people type them: `move_absolute target=100 velocity=50`, `mdi "G1 X10 F500"`, `axes=[x, y]`."""
 
 from __future__ import annotations
 
@@ -7,8 +7,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import yaml
+
 from cnc_ptp.errors import CncError
-from cnc_ptp.plc.scenario import SWITCH_WORDS
+from cnc_ptp.plc.scenario import SWITCH_WORDS, read_value
 from cnc_ptp.protocol.commands import BAD_ARGUMENT, Argument, Arguments, check_arguments, check_sendable, current_names
 
 SWITCHES = SWITCH_WORDS | {"true": True, "false": False}
@@ -55,7 +57,9 @@ def _value(name: str, text: str, argument: Argument) -> Any:
             return float(text)
         if argument.kind == "integer":
             return int(text, 0)
-    except ValueError:
+        if argument.kind in ("rows", "files"):
+            return read_value(text)
+    except (ValueError, yaml.YAMLError):
         return text
     if argument.kind == "switch":
         return SWITCHES.get(text.lower(), text)

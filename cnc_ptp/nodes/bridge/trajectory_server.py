@@ -19,7 +19,7 @@ from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.plc.trajectories import FOLLOW, FollowedTrajectory
 from cnc_ptp.protocol.blocks import AxisBlock, Command, CommandRecord, CycleBlock
 from cnc_ptp.protocol.jobs import JobStatus
-from cnc_ptp.protocol.unit import PLC
+from cnc_ptp.protocol.unit import PLC, UPSTREAM_LOST
 
 PATIENCE_BLOCKS = 50
 """Blocks that a result waits for the text of an error, which comes on another topic."""
@@ -124,7 +124,7 @@ class TrajectoryServer(JobServer):
         if not failed:
             return True
         member = followed.members[failed]
-        result.error_id = member.error_id
+        result.error_id = UPSTREAM_LOST if followed.lost else member.error_id
         result.error_string = self._reason(failed, followed)
         if not result.error_string and self._waited < PATIENCE_BLOCKS:
             self._waited += 1
@@ -140,7 +140,7 @@ class TrajectoryServer(JobServer):
         """The text of the axis; empty while that of its error has not come."""
         member = followed.members[axis]
         if followed.lost:
-            return f"axis {axis}: its node is lost"
+            return f"axis {axis}: its node is lost; the other axes stop on their ramps"
         if member.ended == JobStatus.ABORTED:
             return f"axis {axis}: the trajectory was aborted by a stop or another command; all axes have stopped"
         return member.message or self._texts.get((axis, member.error_id), "")

@@ -6,6 +6,7 @@ import os
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from itertools import count
 from typing import Any
 
@@ -24,7 +25,7 @@ from cnc_ptp.nodes.client.latest_blocks import LatestBlocks
 from cnc_ptp.nodes.client.requests import check_integers, request_of
 from cnc_ptp.nodes.polling_node import PollingNode
 from cnc_ptp.nodes.topics import COUPLING_SERVICES, SERIES_SERVICES, SERVICES
-from cnc_ptp.protocol.commands import COMMANDS, UNKNOWN_COMMAND, Arguments
+from cnc_ptp.protocol.commands import COMMANDS, FILE_CONTENTS, UNKNOWN_COMMAND, Arguments
 from cnc_ptp.protocol.unit import PLC
 
 NO_MACHINE = 26135
@@ -174,8 +175,15 @@ def services_of(kind: str) -> dict[str, Any]:
     return SERVICES[kind] | ({**COUPLING_SERVICES, **SERIES_SERVICES} if kind == "axis" else {})
 
 
+FIELDS = {"master_points": "table"}
+"""Fields of services that hold an argument of another name."""
+
+
 def arguments_of(kind: str, unit: str, command: str) -> Arguments:
-    """The arguments that the service of a command takes. Raises CncError 22002 when there is none."""
+    """The arguments that the service of a command takes; rows may also be in a file.
+
+    Raises CncError 22002 when there is none.
+    """
     service = services_of(kind).get(command)
     if service is None:
         where = f"{kind} {unit}"
@@ -184,6 +192,7 @@ def arguments_of(kind: str, unit: str, command: str) -> Arguments:
             raise CncError(UNKNOWN_COMMAND, f"jog has no service, use: cnc_ptp jog {unit} + --speed ...", where=where)
         text = f"unknown command '{command}'{nearest_name(command, known)}"
         raise CncError(UNKNOWN_COMMAND, text, f"nothing was sent. Known: {', '.join(known)}", where=where)
-    fields = service.Request.get_fields_and_field_types()
-    arguments = COMMANDS[kind][command].items()
-    return {name: argument for name, argument in arguments if name in fields and argument.kind != "rows"}
+    fields = {FIELDS.get(name, name) for name in service.Request.get_fields_and_field_types()}
+    arguments = {name: argument for name, argument in COMMANDS[kind][command].items() if name in fields}
+    rows = {name: replace(arguments[name], required=False) for name in arguments if name in FILE_CONTENTS}
+    return arguments | rows

@@ -11,6 +11,9 @@ HALT = {"axis": "halt", "spindle": "stop"}
 """What ends a motion on its ramp, by kind of unit."""
 
 
+SUPERIMPOSED = "move_superimposed"
+
+
 class ExternalJobs:
     """Jobs of one axis or spindle that PLCs have begun, by their numbers, until they have ended."""
 
@@ -21,6 +24,8 @@ class ExternalJobs:
         self._abandoned: set[int] = set()
         """Those whose PLC is gone: each is halted when it is active."""
         self._next_is_abandoned = False
+        self._superimposed: set[int] = set()
+        """Those that are active beside another one."""
         self._commands: list[Command] = []
 
     @property
@@ -28,9 +33,11 @@ class ExternalJobs:
         """A job of a PLC that is there has not ended, or waits for its turn."""
         return bool(self._running)
 
-    def begin(self, job: int) -> None:
-        """An external command was answered; 0: it is no job, or was refused."""
-        if job:
+    def begin(self, job: int, command: str) -> None:
+        """An external command was answered; 0: it is no job, or was refused. A coupling outlives its PLC."""
+        if job and command == SUPERIMPOSED:
+            self._superimposed.add(job)
+        if job and command != "couple":
             (self._abandoned if self._next_is_abandoned else self._running).add(job)
         self._next_is_abandoned = False
 
@@ -50,9 +57,13 @@ class ExternalJobs:
             if event.status != JobStatus.ACTIVE:
                 self._running.discard(event.job)
                 self._abandoned.discard(event.job)
+                self._superimposed.discard(event.job)
         if block.job in self._abandoned:
             self._abandoned.discard(block.job)
             self._commands.append(Command(self._name, self._halt, {}))
+        if beside := self._abandoned & self._superimposed:
+            self._abandoned -= beside
+            self._commands.append(Command(self._name, "halt_superimposed", {}))
 
     def commands(self) -> Iterator[Command]:
         """For the next block."""

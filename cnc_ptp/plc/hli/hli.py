@@ -21,13 +21,24 @@ class Hli:
         kinds: Mapping[str, str],
         largest_overrides: Mapping[str, float],
         timeout: float,
+        numbers: Mapping[str, int],
     ) -> None:
-        """`kinds` of the units by name, `largest_overrides` in percent, `timeout` as ObjectControl."""
+        """`kinds` and logical `numbers` of the units by name, `largest_overrides` in percent.
+
+        `timeout` as ObjectControl.
+        """
         self._plc = plc
         self._notes: list[tuple[int, str]] = []
         self._served: set[str] = set()
         self.objects = {
-            name: ObjectControl(name, kind, largest_override=largest_overrides[name], timeout=timeout, tell=self._note)
+            name: ObjectControl(
+                name,
+                kind,
+                largest_override=largest_overrides[name],
+                timeout=timeout,
+                tell=self._note,
+                masters={number: unit for unit, number in numbers.items() if kinds[unit] == kind},
+            )
             for name, kind in kinds.items()
             if kind != "plc"
         }

@@ -7,12 +7,13 @@ ended, or its messages stop. A motion that it has begun does not outlive it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from math import inf, isfinite
 from typing import Any, NamedTuple
 
+from cnc_ptp.plc.hli.external_commands import external_command
 from cnc_ptp.plc.hli.external_jobs import ExternalJobs
-from cnc_ptp.plc.hli.messages import ControlMessage, external_command, is_stop
+from cnc_ptp.plc.hli.messages import ControlMessage, is_stop
 from cnc_ptp.plc.sequence import is_newer
 from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, Command, CommandAnswer, ControlUnitState, SpindleBlock
 from cnc_ptp.protocol.control_units import CONTROL_UNITS, PERCENT, ControlUnit
@@ -68,8 +69,21 @@ class Answered:
 class ObjectControl:
     """What PLCs command of one axis, spindle or channel."""
 
-    def __init__(self, name: str, kind: str, *, largest_override: float, timeout: float, tell: Tell) -> None:
-        """`largest_override` in percent; `timeout` in s: without a message for so long the object is free; 0: never."""
+    def __init__(
+        self,
+        name: str,
+        kind: str,
+        *,
+        largest_override: float,
+        timeout: float,
+        tell: Tell,
+        masters: Mapping[int, str] | None = None,
+    ) -> None:
+        """`largest_override` in percent; `timeout` in s: without a message for so long the object is free; 0: never.
+
+        `masters`: the units of this kind by their logical numbers.
+        """
+        self._masters = masters or {}
         self.name = name
         self.kind = kind
         self.holder: str | None = None
@@ -251,7 +265,7 @@ class ObjectControl:
             text = "an external command comes before the one before was taken; nothing was changed"
             self._tell_once(NOT_TAKEN, "external", text)
             return
-        command = external_command(self.kind, self.name, message.external)
+        command = external_command(self.kind, self.name, message.external, self._masters)
         if isinstance(command, str):
             self._tell(BAD_VALUE, self._text(f"external command: {command}; nothing was changed"))
             self.external.count += 1
@@ -344,8 +358,9 @@ class ObjectControl:
         if block.answers:
             for edge in self.edges.values():
                 edge.read(block.answers)
-            if self.external.read(block.answers):
-                self._jobs.begin(self.external.job)
+            command = self.external.command
+            if self.external.read(block.answers) and command is not None:
+                self._jobs.begin(self.external.job, command.command)
         self._jobs.read(block)
         if not (self.holder is None or self._moves or self._commanding):
             self.holder = None
