@@ -31,6 +31,16 @@ LISTS = ("axis", "channel", "startup", "zero", "clamp", "compensation", "tool", 
 OF_CHANNELS = ("channel", "startup", "zero", "clamp", "tool")
 NODE_KINDS = ("machine", "channel", "axis", "spindle")
 AXIS_LETTERS = {"T": "linear axes", "R": "rotary axes", "S": "spindles"}
+DRIVE_NUMBERS = {
+    "conventional": 1,
+    "SERCOS": 2,
+    "PROFIDRIVE": 3,
+    "simulation": 4,
+    "Lightbus": 5,
+    "terminal": 6,
+    "CANopen": 8,
+}
+"""Drive types as `drives` names them -> P-AXIS-00020."""
 
 
 class Limit(NamedTuple):
@@ -68,6 +78,8 @@ class Declaration:
     """Shown instead of the limits, if a separate check with its own error number handles them."""
     drives: str
     """Drive types for which the manual lists it; empty: all."""
+    since: str
+    """Version of the CNC that brought it; empty where the manual says nothing."""
     names: Mapping[str, int]
     """Constants for the bits of a number; the lists may use them, joined by |."""
     misprints: tuple[str, ...]
@@ -77,6 +89,11 @@ class Declaration:
     def type(self) -> str:
         """int, float, bool, string or strings."""
         return DATA_TYPES[self.data_type][0]
+
+    @property
+    def drive_types(self) -> tuple[int, ...]:
+        """Values of P-AXIS-00020 for which the manual lists it; empty: all."""
+        return tuple(DRIVE_NUMBERS[name] for name in self.drives.split(", ") if name)
 
     @property
     def key(self) -> str:
@@ -201,6 +218,7 @@ def make_declaration(number: str, entry: Mapping[str, Any]) -> Declaration:
         read_only=entry.get("read_only", True),
         range=entry.get("range", ""),
         drives=entry.get("drives", ""),
+        since=entry.get("since", ""),
         names=entry.get("names", {}),
         misprints=tuple(entry.get("misprints", ())),
     )
