@@ -80,6 +80,11 @@ class Declaration:
     """Drive types for which the manual lists it; empty: all."""
     since: str
     """Version of the CNC that brought it; empty where the manual says nothing."""
+    topic: str
+    """What it is about: one of a few words for each list."""
+    change: str
+    """When a new value takes effect in a running machine: now, standstill; start: at start-up only, as the manual has
+    it; empty: at start-up only in this version."""
     names: Mapping[str, int]
     """Constants for the bits of a number; the lists may use them, joined by |."""
     misprints: tuple[str, ...]
@@ -219,6 +224,8 @@ def make_declaration(number: str, entry: Mapping[str, Any]) -> Declaration:
         range=entry.get("range", ""),
         drives=entry.get("drives", ""),
         since=entry.get("since", ""),
+        topic=entry["topic"],
+        change=entry.get("change", ""),
         names=entry.get("names", {}),
         misprints=tuple(entry.get("misprints", ())),
     )
