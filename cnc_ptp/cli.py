@@ -430,6 +430,16 @@ def params_check_command(machine: str) -> None:
     sys.exit(check(machine))
 
 
+@main.command("init")
+@click.argument("kind", type=click.Choice(("lathe", "mill", "ptp")))
+@click.option("-o", "--output", type=click.Path(dir_okay=False), help="File to write; default: KIND.yaml.")
+def init_command(kind: str, output: str | None) -> None:
+    """Write a commented machine file to begin with; it runs as it is."""
+    from cnc_ptp.commands.init.init import init
+
+    sys.exit(init(kind, output))
+
+
 def identify_options(function: Callable[..., Any]) -> Callable[..., Any]:
     """Options that all identifications share."""
     for option in (
