@@ -15,7 +15,7 @@ from typing import Any
 
 from cnc_ptp.parameters.declare.declarations import Declaration, Limit, ParameterValue, catalogue
 from cnc_ptp.parameters.declare.ranges import default_text, range_text
-from cnc_ptp.parameters.declare.reference import CHANGES, unit_text
+from cnc_ptp.parameters.declare.reference import change_text, unit_text
 
 Schema = dict[str, Any]
 Tree = dict[str, Any]
@@ -156,7 +156,7 @@ def description(entry: Declaration) -> str:
         f"Default {default_text(entry.default)}.",
         f"Axis types {entry.axes}." if entry.axes else "",
         f"Drive types {entry.drives}." if entry.drives else "",
-        f"A change takes effect {CHANGES[entry.change]}.",
+        f"A change takes effect {change_text(entry)}.",
         "" if entry.effective else "Without effect in this version.",
     ]
     return f"{entry.id} {entry.name}\n{entry.text}\n" + " ".join(fact for fact in facts if fact)

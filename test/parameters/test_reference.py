@@ -10,7 +10,7 @@ import pytest
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import load_machine
 from cnc_ptp.parameters.declare.declarations import catalogue
-from cnc_ptp.parameters.declare.reference import CHANGES, entry_text, find, reference_markdown
+from cnc_ptp.parameters.declare.reference import change_text, entry_text, find, reference_markdown
 
 ROOT = Path(__file__).parents[2]
 KV = """\
@@ -23,7 +23,7 @@ P-AXIS-00099  getriebe[i].kv
   default  1000
   in 1/s   0 < … ≤ 42949672.95; default 10
   change   CHANGE
-  source   spindle p.74""".replace("CHANGE", CHANGES[catalogue().by_id["P-AXIS-00099"].change])
+  source   spindle p.74""".replace("CHANGE", change_text(catalogue().by_id["P-AXIS-00099"]))
 
 
 def describe(wanted: str) -> str:

@@ -84,7 +84,7 @@ class Declaration:
     """What it is about: one of a few words for each list."""
     change: str
     """When a new value takes effect in a running machine: now, standstill; start: at start-up only, as the manual has
-    it; empty: at start-up only in this version."""
+    it; empty: at start-up only in this version. Axis types behind it: for these only."""
     names: Mapping[str, int]
     """Constants for the bits of a number; the lists may use them, joined by |."""
     misprints: tuple[str, ...]
@@ -136,6 +136,11 @@ class Declaration:
     def effective_for(self, axis_type: str) -> bool:
         """Whether it has an effect on an axis of type T, R or S, or on a node without axis type."""
         return axis_type in self.effective if isinstance(self.effective, str) else self.effective
+
+    def change_for(self, axis_type: str) -> str:
+        """`change` for an axis of type T, R or S, or for a node without axis type."""
+        when, _, letters = self.change.partition(" ")
+        return "" if letters and axis_type not in letters else when
 
     def unit_for(self, axis_type: str) -> str:
         """Unit for an axis of type T, R or S."""

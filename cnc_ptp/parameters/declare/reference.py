@@ -178,11 +178,17 @@ def entry_text(declaration: Declaration) -> str:
         *shown_lines(declaration),
         f"  drives   {declaration.drives}",
         f"  since    {declaration.since}",
-        f"  change   {CHANGES[declaration.change]}",
+        f"  change   {change_text(declaration)}",
         f"  source   {declaration.source}",
         effect_line(declaration),
     ]
     return "\n".join(line for line in lines if line.strip() not in ("", "range", "unit", "drives", "since"))
+
+
+def change_text(declaration: Declaration) -> str:
+    """When a new value takes effect, and for which axes."""
+    when, _, letters = declaration.change.partition(" ")
+    return CHANGES[when] + (f", of {' and '.join(AXIS_LETTERS[letter] for letter in letters)}" if letters else "")
 
 
 def shown_lines(declaration: Declaration) -> Iterator[str]:
