@@ -12,7 +12,7 @@ from cnc_ptp.parameters.check.machine_checks import NODE_CHECKS
 from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.declare.declarations import Declaration, ParameterValue, dotted
 from cnc_ptp.parameters.read.messages import Notice
-from cnc_ptp.parameters.read.parameter_set import Given, ParameterSet
+from cnc_ptp.parameters.read.parameter_set import Given, Parameter, ParameterSet
 from cnc_ptp.parameters.read.sections import checked_entry
 from cnc_ptp.parameters.read.source import Entry, Value
 from cnc_ptp.parameters.read.values import BadValue, checked_value, shown
@@ -51,22 +51,32 @@ def changed(own: ParameterSet, name: str, wanted: Value) -> Change:
     Raises CncError 23095 for one that cannot change at run time, 23096 for a value that the machine file could not
     have either, 110641 for P-COMP-00062.
     """
+    declaration, indexes, value = possible_change(own, name, wanted)
+    ros_name, place = declaration.ros_name(indexes), own.where(declaration.id, *indexes)
+    new = replace(own, given={**own.given, ros_name: Given(value, place)})
+    for check in NODE_CHECKS[own.kind]:
+        for problem in check(new):
+            raise CncError(BAD_PARAMETER_VALUE, problem.text)
+    return Change(declaration, ros_name, value, new)
+
+
+def possible_change(own: ParameterSet, name: str, wanted: Value) -> Parameter:
+    """A parameter that can change at run time, with its new value in its type; not compared with others.
+
+    Raises CncError as `changed` does.
+    """
     try:
         found = parameter_by_name(own, name)
     except CncError as error:
         raise CncError(NOT_WRITABLE, error.reason) from None
-    declaration, ros_name = found.declaration, found.ros_name
+    declaration = found.declaration
     refuse_fixed(own, declaration)
     try:
         value = checked_value(declaration, listed(declaration, wanted), declaration.unit_for(own.axis_type))
     except BadValue as error:
         reason = f"{declaration.id} {declaration.list_style_name(found.indexes)}: {error.text}"
         raise CncError(BAD_PARAMETER_VALUE, reason) from None
-    new = replace(own, given={**own.given, ros_name: Given(value, own.where(declaration.id, *found.indexes))})
-    for check in NODE_CHECKS[own.kind]:
-        for problem in check(new):
-            raise CncError(BAD_PARAMETER_VALUE, problem.text)
-    return Change(declaration, ros_name, value, new)
+    return found._replace(value=value)
 
 
 def refuse_fixed(own: ParameterSet, declaration: Declaration) -> None:
