@@ -70,6 +70,8 @@ docs: setup $(VENV)/.docs
 	$(BIN)/python -m cnc_ptp.commands.language.reference > docs/nc_language.md
 	$(BIN)/python -m cnc_ptp.commands.language.reference iso > docs/iso_language.md
 	$(BIN)/python -m cnc_ptp.commands.language.grammar > tools/nc.tmLanguage.json
+	$(BIN)/python -m cnc_ptp.commands.machine_schema > tools/machine.schema.json
+	$(BIN)/python -m cnc_ptp.commands.scenario_schema > tools/scenario.schema.json
 	$(BIN)/python -m figures.gallery > docs/gallery.md
 	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going -d build/site-cache docs build/site
 

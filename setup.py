@@ -20,7 +20,7 @@ COMMANDS = (
     "simulate", "run", "status", "jog", "check", "explain", "format", "replay", "report", "plot", "params", "identify",
     "circle", "curve", "lists",
 )  # fmt: skip
-"""Executables of their own. Not `do` and `watch`: one is a word of the shell, the other a program of every Linux."""
+"""Executables of their own. Not `do`, a word of the shell, nor `watch` and `init`, which every Linux has."""
 NODES = ("nc_channel", "axis", "spindle", "plc_bridge", "clock", "recorder", "player")
 
 
@@ -175,6 +175,7 @@ setup(
         PACKAGE: [
             "parameters/declare/*.yaml",
             "commands/language/*.yaml",
+            "commands/init/*.yaml",
             "nc/cycles/*.nc",
             "nodes/*.xml",
             "plots/*.js",
@@ -189,6 +190,7 @@ setup(
         (f"share/{PACKAGE}", ["package.xml"]),
         share("launch", "launch/*.launch.py"),
         share("config", "config/*.yaml"),
+        share("tools", "tools/*.json"),
         share("config/tools", "config/tools/*.yaml"),
         share("examples", "examples/*.*"),
         share("examples/lists", "examples/lists/*.lis"),

@@ -382,16 +382,63 @@ def require_none(options: dict[str, Any], why: str) -> None:
             raise click.UsageError(f"{names.get(name, f'--{name}')} {why}; nothing was drawn")
 
 
-@main.command("params")
-@click.argument("words", nargs=-1, metavar="[WORD]...")
-def params_command(words: tuple[str, ...]) -> None:
-    """Show the parameter reference.
+class WordsOrCommand(Group):
+    """A group whose arguments are those of its command `search`, unless the first one is another command."""
 
-    Shows what matches the WORDs (id, number, parts of names, text), or all groups.
+    def parse_args(self, context: click.Context, args: list[str]) -> list[str]:
+        first = args[0] if args else ""
+        if first not in (*self.commands, *context.help_option_names):
+            args = ["search", *args]
+        return super().parse_args(context, args)
+
+
+@main.group("params", cls=WordsOrCommand)
+def params_group() -> None:
+    """Show the parameter reference; compare and check machine files.
+
+    `cnc_ptp params WORD...` shows what matches the words (id, number, parts of names, text), without words all groups.
     """
+
+
+@params_group.command("search")
+@click.argument("words", nargs=-1, metavar="[WORD]...")
+@click.option("--list", "list_name", help="Only this list: axis, channel, P-COMP ...")
+@click.option("--topic", help="Only parameters of a topic, or of topics that have this word.")
+@click.option("--changed", type=click.Path(dir_okay=False), help="Only what this machine file sets otherwise.")
+def params_command(words: tuple[str, ...], **options: Any) -> None:
+    """What matches the WORDs (id, number, parts of names, text), or all groups."""
     from cnc_ptp.commands.look.params import params
 
-    sys.exit(params(" ".join(words)))
+    sys.exit(params(" ".join(words), **options))
+
+
+@params_group.command("diff")
+@click.argument("first", type=click.Path(dir_okay=False))
+@click.argument("second", type=click.Path(dir_okay=False))
+def params_diff_command(first: str, second: str) -> None:
+    """In which parameters two machine files differ, defaults included. Status 1 if they do."""
+    from cnc_ptp.commands.look.machine_params import diff
+
+    sys.exit(diff(first, second))
+
+
+@params_group.command("check")
+@MACHINE
+def params_check_command(machine: str) -> None:
+    """Everything that is wrong or doubtful in a machine file, at once. Status 2 if it would not start."""
+    from cnc_ptp.commands.look.machine_params import check
+
+    sys.exit(check(machine))
+
+
+@main.command("init")
+@click.argument("kind", type=click.Choice(("lathe", "mill", "ptp")))
+@click.option("-o", "--output", type=click.Path(dir_okay=False), help="File to write; default: KIND.yaml.")
+def init_command(kind: str, output: str | None) -> None:
+    """Write a commented machine file to begin with; it runs as it is."""
+    from cnc_ptp.commands.init.init import init
+
+    sys.exit(init(kind, output))
 
 
 @main.group("lists")

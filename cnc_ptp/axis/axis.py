@@ -114,6 +114,15 @@ class Axis:
         self._report_error = report_error
         self._report_warning = report_warning
 
+    def take_parameters(self, parameters: AxisParameters, *, cycle_time: float) -> None:
+        """Other parameters, from now on; what the axis does and where it is stays. `cycle_time` in s."""
+        self.parameters = parameters
+        self.checks.take(parameters)
+        self.own_limits = self.checks.own_limits()
+        self.external.limits = self.own_limits._replace(velocity=parameters.max_velocity)
+        cycles = round(parameters.target_time / cycle_time)
+        self.target_window.set(window=parameters.position_window, cycles=cycles)
+
     @property
     def emergency_limits(self) -> Limits:
         """Those of the emergency ramp: P-AXIS-00003, never weaker than the axis' own deceleration."""

@@ -107,6 +107,7 @@ class AxisUnit(Unit):
         self.overlay.full_override = self._override.highest
         self.overlay.begin("controller_enable", float(parameters.powered_at_start))
         self._stops = StopCommands(self._axis)
+        self._control = ControlCommands(self._loop, f"axis {parameters.name}")
         self._commands = (
             self,
             PowerCommands(self._axis, actual_position=lambda: self._loop.position),
@@ -124,8 +125,8 @@ class AxisUnit(Unit):
             ExternalCommands(self._axis),
             CouplingCommands(self._axis, axes=known, cycle_time=cycle_time),
             DecouplingCommands(self._axis),
-            ParameterCommands(self._axis, cycle_time=cycle_time),
-            ControlCommands(self._loop, f"axis {parameters.name}"),
+            ParameterCommands(self._axis, self._loop, cycle_time=cycle_time, reselect=self._control.reselect),
+            self._control,
         )
         self._last_block: AxisBlock | None = None
 

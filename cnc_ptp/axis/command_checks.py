@@ -37,18 +37,22 @@ class MotionChecks:
 
     def __init__(self, parameters: AxisParameters, *, cycle_time: float) -> None:
         """`cycle_time` in s."""
-        self._parameters = parameters
         self._cycle_time = cycle_time
+        self.coordinate_shift = 0.0
+        """By how much set_position has moved the coordinates of the axis against those of the machine, mm (deg)."""
+        self.referenced = parameters.referenced_at_start
+        """The coordinates of the axis are those of the machine; without that there are no soft limits."""
+        self.take(parameters)
+
+    def take(self, parameters: AxisParameters) -> None:
+        """Other limits of the axis; its coordinates stay."""
+        self._parameters = parameters
         self._unit = "deg" if parameters.rotary else "mm"
         positive, negative = parameters.soft_limit_positive, parameters.soft_limit_negative
         positive_text = f"positive soft limit {positive} {self._unit} (P-AXIS-00178)"
         negative_text = f"negative soft limit {negative} {self._unit} (P-AXIS-00177)"
         self._positive_limit = SoftLimit(positive, SOFT_LIMIT_POSITIVE, positive_text)
         self._negative_limit = SoftLimit(negative, SOFT_LIMIT_NEGATIVE, negative_text)
-        self.coordinate_shift = 0.0
-        """By how much set_position has moved the coordinates of the axis against those of the machine, mm (deg)."""
-        self.referenced = parameters.referenced_at_start
-        """The coordinates of the axis are those of the machine; without that there are no soft limits."""
 
     def refusal(self, command: str, number: int, reason: str, /, **values: Value) -> CncError:
         where = f"axis {self._parameters.name}: {command} refused"

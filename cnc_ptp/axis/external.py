@@ -79,7 +79,7 @@ class ExternalSetpoints:
         """`cycle_time` in s; `dead_time` in s by which setpoints come late; `limits` of the axis."""
         self._cycle_time = cycle_time
         self._dead_time = dead_time
-        self._limits = limits
+        self.limits = limits
         self._waiting: deque[Setpoint] = deque()
         self._driving: Setpoint | None = None
         self._period = 1
@@ -145,7 +145,7 @@ class ExternalSetpoints:
     def brake(self, cycle: int, state: MotionState) -> None:
         """Another motion ends at `cycle` with `state`: it comes to rest here, in addition to what is contributed."""
         position, velocity = self.contribution(cycle)[0] + state[0], state[1]
-        self._rest, self._rest_cycle = plan_to_velocity(position, velocity, 0.0, 0.0, self._limits), cycle
+        self._rest, self._rest_cycle = plan_to_velocity(position, velocity, 0.0, 0.0, self.limits), cycle
 
     def reset(self) -> None:
         """The basic motion has taken over what was contributed."""
@@ -214,7 +214,7 @@ class ExternalSetpoints:
                 continue
             driving = setpoint._replace(position=setpoint.position - self._reference)
             distance = self._driven(driving, cycle)[0] - self.contribution(cycle - 1)[0]
-            farthest = self._limits.velocity * self._cycle_time * (1.0 + 1e-9)
+            farthest = self.limits.velocity * self._cycle_time * (1.0 + 1e-9)
             if abs(distance) > farthest + rounding(setpoint.position, self._reference):
                 self.rejected = setpoint, distance
                 self._waiting.clear()
@@ -241,4 +241,4 @@ class ExternalSetpoints:
         position, velocity, _, _ = self._driven(driving, cycle)
         if abs(velocity) <= NEGLIGIBLE_VELOCITY:
             velocity = 0.0
-        return plan_to_velocity(position, velocity, 0.0, 0.0, self._limits)
+        return plan_to_velocity(position, velocity, 0.0, 0.0, self.limits)

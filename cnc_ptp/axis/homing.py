@@ -20,6 +20,7 @@ from cnc_ptp.axis.faults import HOMING_SIGNAL_MISSING
 from cnc_ptp.control.control_loop import ControlLoop
 from cnc_ptp.control.drives.reference_marks import ReferenceMarks
 from cnc_ptp.motion.setpoints import MotionState
+from cnc_ptp.parameters.view.homing_view import HomingParameters
 
 
 class Phase(Enum):
@@ -39,13 +40,16 @@ class Homing:
 
     def __init__(self, axis: Axis, loop: ControlLoop) -> None:
         self._axis, self._loop = axis, loop
-        self._parameters = axis.parameters.homing
-        self._marks = ReferenceMarks(self._parameters)
+        self._marks = ReferenceMarks(axis.parameters.homing)
         self._phase = Phase.END
         self._was_on_cam = False
-        self._position = self._parameters.reference_position
+        self._position = axis.parameters.homing.reference_position
         self._armed_at: float | None = None
         """Where the encoder was when it last looked for the zero pulse; None: it does not look yet."""
+
+    @property
+    def _parameters(self) -> HomingParameters:
+        return self._axis.parameters.homing
 
     @property
     def on_cam(self) -> bool:

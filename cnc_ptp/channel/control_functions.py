@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from cnc_ptp.nc.canonical import AxisFeedforward, ControlFunction, SpindleFeedforward
+from cnc_ptp.nc.canonical import AxisFeedforward, ControlFunction, MachineData, SpindleFeedforward
 from cnc_ptp.parameters import ChannelParameters
 from cnc_ptp.protocol.blocks import Command
 
@@ -20,8 +20,17 @@ def control_commands(channel: ChannelParameters, function: ControlFunction) -> l
     if isinstance(function, SpindleFeedforward):
         node = next(spindle.node for spindle in channel.spindles if spindle.name == function.spindle)
         return [_set_feedforward(node, function.on, function.weight)]
+    if isinstance(function, MachineData):
+        place = place_of(channel, function.axis)
+        arguments = {"parameter": function.parameter, "value": function.value, "by_path": True}
+        return [Command(channel.axes[place].node, "write_parameter", arguments)]
     node = next(axis.node for axis in channel.axes if axis.name == function.axis)
     return [Command(node, "set_friction_compensation", {"enabled": function.on})]
+
+
+def place_of(channel: ChannelParameters, axis: str) -> int:
+    """Index of an axis by its name in programs or its logical number; -1 for one that the channel does not have."""
+    return next((n for n, each in enumerate(channel.axes) if axis in (each.name, str(each.number))), -1)
 
 
 def reset_commands(channel: ChannelParameters) -> list[Command]:

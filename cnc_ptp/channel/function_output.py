@@ -28,6 +28,7 @@ from cnc_ptp.nc.canonical import (
     Function,
     GearChange,
     LanguageWarning,
+    MachineData,
     Message,
     OrderedError,
     Source,
@@ -196,7 +197,7 @@ class FunctionOutput:
                 self._auxiliary(function, block.source, outgoing)
             case CuttingSpeed():
                 self.cutting_speed.take(function)
-            case AxisFeedforward() | CompensationSwitch():
+            case AxisFeedforward() | CompensationSwitch() | MachineData():
                 outgoing.commands += control_commands(self._channel, function)
                 outgoing.waits.append(Wait(Moment.NEXT_MOTION, until_sent=True))
             case SpindleFeedforward():

@@ -7,7 +7,9 @@ from functools import partial
 from math import inf
 from typing import NamedTuple
 
-from cnc_ptp.axis.faults import HOMING_DISABLED, SOFT_LIMIT_NEGATIVE, SOFT_LIMIT_POSITIVE
+from cnc_ptp.axis.faults import CHANNEL_HAS_IT, HOMING_DISABLED, SOFT_LIMIT_NEGATIVE, SOFT_LIMIT_POSITIVE
+from cnc_ptp.axis.parameter_commands import OF_THE_PATH
+from cnc_ptp.channel.control_functions import place_of
 from cnc_ptp.channel.program_start import ProgramStart
 from cnc_ptp.channel.program_times import BlockTimes
 from cnc_ptp.channel.thread_reading import ThreadReading
@@ -23,6 +25,7 @@ from cnc_ptp.nc.canonical import (
     Function,
     HomeAxes,
     LinearMove,
+    MachineData,
     Source,
     SpindleCommand,
     SpindleFunction,
@@ -34,7 +37,7 @@ from cnc_ptp.nc.coordinates.codes import initial_state
 from cnc_ptp.nc.coordinates.coordinates import NO_CHANGES, OffsetChanges
 from cnc_ptp.nc.coordinates.limits import moving_axes, require_within
 from cnc_ptp.nc.expressions.values import Values, Variable, copies
-from cnc_ptp.nc.faults import M_NOT_THERE, ProgramError
+from cnc_ptp.nc.faults import AXIS_UNKNOWN, M_NOT_THERE, ProgramError
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.measuring import measures
@@ -55,6 +58,7 @@ from cnc_ptp.parameters import (
     SpindleParameters,
     catalogue,
 )
+from cnc_ptp.parameters.check.runtime_change import possible_change
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.parameters.view.homing_view import DISABLED
 from cnc_ptp.path.thread.thread_check import require_velocity, thread_settings
@@ -456,7 +460,9 @@ class ProgramCheck:
     def _function(self, function: Function, source: Source) -> None:
         if isinstance(function, (SpindleFunction, SpindleCommand)):
             self._position_known(function, source)
-        if isinstance(function, CompensationSwitch):
+        if isinstance(function, MachineData):
+            self._machine_data(function, source)
+        elif isinstance(function, CompensationSwitch):
             self._compensation(function, source)
         elif not isinstance(function, AuxiliaryFunction):
             return
@@ -472,6 +478,23 @@ class ProgramCheck:
             reason = "friction compensation is not activated (P-AXIS-00522 lr_param.frict_comp = 0)"
             text = f"axis {function.axis}: {reason}"
             raise ProgramError(NO_FRICTION_COMPENSATION, text, source, source.column(function.axis))
+
+    def _machine_data(self, function: MachineData, source: Source) -> None:
+        """Raises ProgramError 20797 for a number that no axis has, 23095, 23096, 23100, 110641."""
+        place, column = place_of(self._channel, function.axis), source.place_of(function.parameter)
+        if place < 0:
+            known = ", ".join(f"{axis.number} ({axis.name})" for axis in self._channel.axes)
+            raise AXIS_UNKNOWN.at(source, source.place_of(f"={function.axis} "), word=function.axis, known=known)
+        own = self._axes[place].raw
+        if own is None:
+            return
+        try:
+            declaration = possible_change(own, function.parameter, function.value)[0]
+        except CncError as error:
+            raise ProgramError(error.number, f"axis {function.axis}: {error.reason}", source, column) from None
+        if declaration.id in OF_THE_PATH:
+            reason = f"{declaration.id} ({declaration.name}) cannot be written at run time, the channel has it, too"
+            raise ProgramError(CHANNEL_HAS_IT, f"axis {function.axis}: {reason}", source, column)
 
     def _position_known(self, function: SpindleFunction | SpindleCommand, source: Source) -> None:
         """Vetoes M19 and G74 of a spindle without actual position (TF5200 spindle 2.2.4)."""

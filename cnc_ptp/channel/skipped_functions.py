@@ -17,6 +17,7 @@ from cnc_ptp.nc.canonical import (
     CuttingSpeed,
     Function,
     GearChange,
+    MachineData,
     SpindleCommand,
     SpindleFeedforward,
     SpindleFunction,
@@ -107,6 +108,8 @@ def group_of(function: Function) -> Group | None:
         return "feedforward", function.spindle, ""
     if isinstance(function, CompensationSwitch):
         return "compensation", function.axis, " ".join(function.kinds)
+    if isinstance(function, MachineData):
+        return "machine data", function.axis, function.parameter
     return None
 
 

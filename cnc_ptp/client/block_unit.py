@@ -95,8 +95,10 @@ class BlockUnit(ABC):
     def parameter(self, name: str) -> ParameterValue:
         """Value in the unit of its list, by P number or name. Raises CncError 22169, 26136."""
         link = self._session.link
-        found = parameter_by_name(link.parameters_of(self.name), name)
-        return link.seen.written(self.name).get(found.declaration.id, found.value)
+        own = link.parameters_of(self.name)
+        found, written = parameter_by_name(own, name), link.seen.written(self.name)
+        newer = [value for given, value in written.items() if parameter_by_name(own, given).ros_name == found.ros_name]
+        return newer[-1] if newer else found.value
 
 
 def keep(notes: dict[int, T], number: int, value: T) -> None:

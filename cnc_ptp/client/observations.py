@@ -97,14 +97,16 @@ class Observations:
         """A command that was carried out or refused, whoever has given it."""
         if record.command == WRITE_PARAMETER and record.accepted and record.target in self._written:
             arguments = json.loads(record.arguments_json)
-            self._written[record.target][arguments["parameter"]] = arguments["value"]
+            written = self._written[record.target]
+            written.pop(arguments["parameter"], None)  # the newest is the last one
+            written[arguments["parameter"]] = arguments["value"]
         elif record.command == BEGIN and record.target in self._trajectories:
             self._trajectories[record.target].append(record)
 
     # what is asked
 
     def written(self, unit: str) -> Mapping[str, ParameterValue]:
-        """Parameters of a unit that were written at run time, by P number."""
+        """Parameters of a unit that were written at run time, by the name with which they were, the newest last."""
         return self._written[unit]
 
     def trajectory(self, unit: str, cycle: int) -> CommandRecord | None:

@@ -73,6 +73,10 @@ class FeedforwardCommands:
             warnings.append("feedforward without effect, P-AXIS-00223 (vorsteuer.vorsteuerung) is NONE")
         return warning_text(number, f"{self._subject}: {'; '.join(warnings)}") if warnings else None
 
+    def reselect(self) -> None:
+        """What is selected holds for another feedforward of the loop, too."""
+        self._feedforward_loop.select_feedforward(self._on, self._weight_percent)
+
     def do_reset_feedforward(self, cycle: int) -> None:
         """Start of an NC program: feedforward off, weight 100 %; P-AXIS-00255 keeps it on."""
         self._on, self._weight_percent = False, FULL_WEIGHT

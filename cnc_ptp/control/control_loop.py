@@ -103,20 +103,13 @@ class ControlLoop:
         """`cycle_time` in s; `limits` of the axis, within which feedforward is coupled in and out."""
         self.drive = drive
         self._virtual = drive if isinstance(drive, VirtualDrive) else None
+        self._cycle_time = cycle_time
         self.kv = parameters.kv
         self.monitor = FollowingErrorMonitor(parameters.monitoring, kv=parameters.kv, cycle_time=cycle_time)
         self.delay_cycles = parameters.delay_cycles
         scaling = parameters.scaling
-        self.feedforward = Feedforward(
-            parameters.feedforward,
-            cycle_time=cycle_time,
-            kv=parameters.kv,
-            torque_per_acceleration=scaling.torque_per_acceleration if scaling.torque else 0.0,  # 110465
-            limits=limits,
-            delay_cycles=self.delay_cycles,
-            samples_velocity=parameters.drive.interface == "torque",
-        )
-        self.friction = FrictionCompensation(parameters.friction, delay_cycles=self.delay_cycles, cycle_time=cycle_time)
+        self.feedforward = self._feedforward_of(parameters, limits)
+        self.friction = self._friction_of(parameters)
         self.torque_digits = scaling.torque
         """Digits of the drive for 1 Nm (N)."""
         self._torque_per_digit = 1.0 / scaling.torque if scaling.torque else 0.0
@@ -133,6 +126,32 @@ class ControlLoop:
         """Offset between the position of the encoder and the coordinates of the axis."""
         self._plain = self._interface == "velocity" and self.delay_cycles == 0
         self._plain = self._plain and not (self._virtual or self._modulo.on or parameters.friction.permitted)
+
+    def _feedforward_of(self, parameters: ControlParameters, limits: CouplingLimits) -> Feedforward:
+        scaling = parameters.scaling
+        return Feedforward(
+            parameters.feedforward,
+            cycle_time=self._cycle_time,
+            kv=parameters.kv,
+            torque_per_acceleration=scaling.torque_per_acceleration if scaling.torque else 0.0,  # 110465
+            limits=limits,
+            delay_cycles=self.delay_cycles,
+            samples_velocity=parameters.drive.interface == "torque",
+        )
+
+    def _friction_of(self, parameters: ControlParameters) -> FrictionCompensation:
+        return FrictionCompensation(parameters.friction, delay_cycles=self.delay_cycles, cycle_time=self._cycle_time)
+
+    def take(self, parameters: ControlParameters, limits: CouplingLimits) -> None:
+        """Other gains, feedforward and friction compensation, at a standstill; the feedforward is to be selected again.
+
+        Drive, formats and delays are those of the start.
+        """
+        self.kv = parameters.kv
+        self.monitor.take(parameters.monitoring, kv=parameters.kv)
+        self.feedforward = self._feedforward_of(parameters, limits)
+        friction, self.friction = self.friction, self._friction_of(parameters)
+        self.friction.follow(friction)
 
     @property
     def virtual(self) -> bool:

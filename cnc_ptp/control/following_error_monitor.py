@@ -37,18 +37,22 @@ class FollowingErrorMonitor:
 
     def __init__(self, parameters: LagMonitoring, *, kv: float, cycle_time: float) -> None:
         """`kv` in 1/s, `cycle_time` in s."""
+        self._cycle_time = cycle_time
+        self._estimate = 0.0
+        self._above = self._rest = 0
+        self.take(parameters, kv=kv)
+
+    def take(self, parameters: LagMonitoring, *, kv: float) -> None:
+        """Other limits; what has been observed so far stays."""
         off = parameters.kind in (ESTIMATED, LINEAR) and parameters.dynamic >= SCALE
         self._kind = 0 if off else parameters.kind
         self.on = self._kind in MONITORING_TYPES
         self._moving, self._standing = parameters.moving_limit, parameters.standstill_limit
-        self._cycle_time = cycle_time
         self._factor = parameters.dynamic / SCALE
         if self._kind == LINEAR:
             self._factor = SCALE / (SCALE - parameters.dynamic) / kv
-        self._estimate = 0.0
-        self._above = self._rest = 0
-        self._settling = ceil(SETTLING / kv / cycle_time)
-        self._needed = round(parameters.filter_time / cycle_time)
+        self._settling = ceil(SETTLING / kv / self._cycle_time)
+        self._needed = round(parameters.filter_time / self._cycle_time)
 
     def source(self, velocity: float) -> str:
         """The parameter that sets `limit`, for messages."""

@@ -78,6 +78,11 @@ class FrictionCompensation:
         """P-AXIS-00522 and P-COMP-00041 are set, the table has entries: switched on, it outputs a current."""
         return self._active and self._table is not None
 
+    def follow(self, before: FrictionCompensation) -> None:
+        """Takes over how another one was switched, at a standstill."""
+        if before._active:
+            self.switch(before.on)
+
     def switch(self, on: bool) -> None:
         """COMP ON FRICT, COMP OFF FRICT; with P-COMP-00041 = 0 it stays off.
 

@@ -36,6 +36,10 @@ class Source(NamedTuple):
         found = [self.columns[index] for index, other in enumerate(self.names) if other == name]
         return found[-1 if last else 0] if found else 1
 
+    def place_of(self, text: str) -> int:
+        """Column of a part of the line that is no word; 1 if it is not in the line."""
+        return self.text.upper().find(text.upper()) + 1 or 1
+
 
 CODES = ("G", "M")
 
@@ -319,7 +323,16 @@ class CompensationSwitch(NamedTuple):
         return self.axis
 
 
-ControlFunction = AxisFeedforward | SpindleFeedforward | CompensationSwitch
+class MachineData(NamedTuple):
+    """#MACHINE DATA: another value of a parameter of an axis, by P number or name, in the unit of its list."""
+
+    axis: str
+    """Its name in programs, or its logical number."""
+    parameter: str
+    value: float
+
+
+ControlFunction = AxisFeedforward | SpindleFeedforward | CompensationSwitch | MachineData
 """Functions for position controllers."""
 Function = (
     SpindleFunction

@@ -15,6 +15,7 @@ from cnc_ptp.nc.canonical import (
     KinematicsChange,
     LanguageWarning,
     LinearMove,
+    MachineData,
     Message,
     Motion,
     OrderedError,
@@ -77,7 +78,7 @@ def format_function(function: Function) -> str:
             return f"{'error' if severe else 'warning'} {code} {text!r}"
         case LanguageWarning(code, text):
             return f"warning {code} {text!r}"
-        case AxisFeedforward() | SpindleFeedforward() | CompensationSwitch():
+        case AxisFeedforward() | SpindleFeedforward() | CompensationSwitch() | MachineData():
             return _control(function)
         case SpindleFunction():
             return f"{function.spindle}[{' '.join(_spindle_words(function))}]"
@@ -97,6 +98,8 @@ def _spindle_words(function: SpindleFunction) -> list[str]:
 def _control(function: ControlFunction) -> str:
     if isinstance(function, CompensationSwitch):
         return f"{function.axis}[COMP {'ON' if function.on else 'OFF'} {' '.join(function.kinds)}]"
+    if isinstance(function, MachineData):
+        return f"{function.axis}[{function.parameter}={number(function.value)}]"
     selection = [] if function.on is None else ["G135" if function.on else "G137"]
     if isinstance(function, SpindleFeedforward):
         weight = [] if function.weight is None else [f"G136={number(function.weight)}"]

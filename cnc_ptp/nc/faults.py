@@ -117,6 +117,7 @@ CALL_AND_END = Fault(21021, "subroutine call and {word} in one block")
 
 # Motion
 AXIS_UNKNOWN = Fault(20797, "axis {word} is not in the machine; axes of this channel: {known}")
+WAIT_WITHOUT_SYN = Fault(21413, "#MACHINE DATA: WAIT needs SYN")
 FEED_MISSING = Fault(20008, "{g} without a feed: no F greater than 0 was programmed")
 FEED_NEGATIVE = Fault(21022, "feed F{value} is negative")
 DWELL_MISSING = Fault(21023, "G04 without a time")

@@ -18,7 +18,15 @@ from cnc_ptp.nc import (
     transitions,
     turning_faults,
 )
-from cnc_ptp.nc.canonical import AVAILABLE_SLOPES, SLOPES, ExplicitSynchronisation, Function, Timer, WaitForPath
+from cnc_ptp.nc.canonical import (
+    AVAILABLE_SLOPES,
+    SLOPES,
+    ExplicitSynchronisation,
+    Function,
+    MachineData,
+    Timer,
+    WaitForPath,
+)
 from cnc_ptp.nc.coordinates import commands
 from cnc_ptp.nc.expressions.nodes import SelfDefined
 from cnc_ptp.nc.expressions.readable import LAST_TIMER
@@ -26,6 +34,7 @@ from cnc_ptp.nc.expressions.reader import ExpressionReader
 from cnc_ptp.nc.flow import flow_faults
 from cnc_ptp.nc.flow.lines import Line
 from cnc_ptp.nc.flow.statements import Declarations, Delete, EndOfModalCall, Mark
+from cnc_ptp.nc.lexer import NUMBER
 from cnc_ptp.nc.modal_state import ModalState
 from cnc_ptp.nc.program import Channel, HashCommand, NcBlock
 from cnc_ptp.nc.spindles import current_main, name_of, names
@@ -39,6 +48,12 @@ _SLOPE = re.compile(r"TYPE\s*=\s*(\w+)(?:\s+NO_OPT\s*=\s*[01])?", re.ASCII)
 """NO_OPT limits the computation for the use of the jerk; here the jerk is always used in full."""
 _TIMER_ACTION = re.compile(r"#\s*TIMER\b\s*([^\s\[]*)", re.ASCII)
 _TIMER = re.compile(r"ID\s*=?\s*(\d{1,3})", re.ASCII)
+_MACHINE_DATA = re.compile(
+    rf"""(?:AX\s*=\s*(?P<axis>[A-Z_][A-Z0-9_]*)|AXNR\s*=?\s*(?P<number>\d{{1,5}}))[\s,]+
+    (?:(?P<id>P-AXIS-\d{{5}}(?:\.\d{{1,4}})*)\s*=\s*(?P<value>{NUMBER})
+    |AXPARAM\s*=?\s*"\s*(?P<name>[^"\s]+)\s+(?P<given>{NUMBER})\s*")(?P<wait>[\s,]+WAIT)?""",
+    re.ASCII | re.VERBOSE,
+)
 
 
 def hash_line(line: Line, text: str, begin: int, outside: str) -> bool:
@@ -221,6 +236,24 @@ def timer(channel: Channel, state: ModalState, block: NcBlock, command: HashComm
     return (Timer(command.name.split()[1], int(found[1])),)
 
 
+def machine_data(channel: Channel, state: ModalState, block: NcBlock, command: HashCommand) -> tuple[Function, ...]:
+    """#MACHINE DATA [AX=X P-AXIS-00099.0=5000], [AXNR=1 AXPARAM="getriebe[0].kv 5000"]; SYN acts as without it.
+
+    The path stands until the axis has the new value, so WAIT, which needs SYN, says nothing new.
+    """
+    found = _MACHINE_DATA.fullmatch(",".join(command.arguments or ()))
+    if found is None:
+        raise arguments_fault(block, command, '[AX=X P-AXIS-00099.0=5000] or [AX=X AXPARAM="getriebe[0].kv 5000"]')
+    if found["wait"] and not command.name.endswith("SYN"):
+        raise faults.WAIT_WITHOUT_SYN.at(block.source, block.source.place_of("WAIT"))
+    axis = found["axis"]
+    if axis and axis not in channel.axes:
+        known = ", ".join(channel.axes) or "none"
+        raise faults.AXIS_UNKNOWN.at(block.source, block.source.place_of(f"={axis}"), word=axis, known=known)
+    parameter, value = found["id"] or found["name"], float(found["value"] or found["given"])
+    return (MachineData(axis or str(int(found["number"])), parameter, value),)
+
+
 def arguments_fault(block: NcBlock, command: HashCommand, syntax: str) -> faults.ProgramError:
     """The error for a command with wrong syntax."""
     return spindle_faults.COMMAND_ARGUMENTS.at(block.source, command.column, command=f"#{command.name}", syntax=syntax)
@@ -247,6 +280,8 @@ COMMANDS: dict[str, Run] = {
     "FLUSH": flush,
     "FLUSH WAIT": flush,
     "FLUSH CONTINUE": flush_continue,
+    "MACHINE DATA": machine_data,
+    "MACHINE DATA SYN": machine_data,
     **{f"TIMER {action}{mode}": timer for action in ("START", "STOP", "READ", "CLEAR") for mode in ("", " SYN")},
 }
 

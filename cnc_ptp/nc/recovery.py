@@ -67,7 +67,7 @@ WRITTEN: Final[dict[int, tuple[str, ...]]] = {
 The maximum of a gear is no word, so it follows from the line that selected the gear.
 """
 CAUSES_NOTHING: Final = re.compile(
-    r"\s*(?:/\s*\d*\s*)?(?:N\s*\d+\s*:?\s*)?#\s*(?:CONTOUR|EXPL|FLUSH|HSC|MSG|SLOPE|TIMER)(?![A-Z])",
+    r"\s*(?:/\s*\d*\s*)?(?:N\s*\d+\s*:?\s*)?#\s*(?:CONTOUR|EXPL|FLUSH|HSC|MACHINE|MSG|SLOPE|TIMER)(?![A-Z])",
     re.ASCII | re.IGNORECASE,
 )
 """Lines without which no other one has an error: they change neither positions nor feed nor spindles."""

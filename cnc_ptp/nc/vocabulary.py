@@ -138,8 +138,8 @@ _M_CODES = (
 
 MAX_SKIP_LEVEL: Final = 10
 _INDEPENDENT: Final = (
-    *("ACS", "CONTOUR", "CS", "EXPL", "FLUSH", "HSC", "MCS", "MSG", "PRESET", "PSET", "ROTATION", "SCALE", "SLOPE"),
-    *("THREAD", "TIMER", "TOOL"),
+    *("ACS", "CONTOUR", "CS", "EXPL", "FLUSH", "HSC", "MACHINE", "MCS", "MSG", "PRESET", "PSET", "ROTATION", "SCALE"),
+    *("SLOPE", "THREAD", "TIMER", "TOOL"),
 )
 """First words of # commands that set no variable and change neither the order of lines nor the names of axes."""
 _NOT_READ: Final = r"(?<![-+*/=,\[])(?<![-+*/=,\[]\s)"

@@ -12,7 +12,14 @@ MachineParameters or raise ParameterError with everything that is wrong.
 
 from cnc_ptp.parameters.declare.declarations import Declaration, catalogue
 from cnc_ptp.parameters.errors import ParameterError, Place, Problem
-from cnc_ptp.parameters.loader import complete_text, load_machine, machine_files, machine_text, read_machine
+from cnc_ptp.parameters.loader import (
+    complete_text,
+    examine_machine,
+    load_machine,
+    machine_files,
+    machine_text,
+    read_machine,
+)
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.view.axis_view import AxisParameters
 from cnc_ptp.parameters.view.channel_view import ChannelAxis, ChannelParameters, ChannelSpindle, ToolLimits
@@ -47,6 +54,7 @@ __all__ = [
     "ToolTable",
     "catalogue",
     "complete_text",
+    "examine_machine",
     "load_machine",
     "machine_files",
     "machine_text",

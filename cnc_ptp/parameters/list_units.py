@@ -22,6 +22,21 @@ DIVISORS: dict[str, int] = {
     "ms": 1_000,
 }
 
+SHOWN_UNITS: dict[str, tuple[str, int]] = {
+    "0.1 µm": ("mm", 10_000),
+    "0.0001°": ("°", 10_000),
+    "0.1 µm or 0.0001°": ("mm or °", 10_000),
+    "µm": ("mm", 1_000),
+    "0.001°": ("°", 1_000),
+    "µm/s": ("mm/s", 1_000),
+    "0.001°/s": ("°/s", 1_000),
+    "0.01/s": ("1/s", 100),
+    "0.1 %": ("%", 10),
+    "µs": ("s", 1_000_000),
+    "ms": ("s", 1_000),
+}
+"""Unit of the lists -> the unit in which people think of it, and how many of the first are one of the second."""
+
 
 def to_kernel(value: float, unit: str) -> float:
     """`value` in list units -> kernel units: 5000 (0.01/s) -> 50.0 1/s. Kernel units stay unchanged."""

@@ -1,13 +1,16 @@
 """Machine file -> MachineParameters: read, check each value and values against each other, or report all problems."""
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from cnc_ptp.parameters import errors
 from cnc_ptp.parameters.check.machine_checks import check_machine
-from cnc_ptp.parameters.check.machine_notices import machine_notices
+from cnc_ptp.parameters.check.machine_notices import machine_notices, notices_without_view
+from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.errors import ParameterError, Place, Problem
 from cnc_ptp.parameters.read.machine_sections import read_parameters
+from cnc_ptp.parameters.read.messages import Notice
 from cnc_ptp.parameters.read.named_files import named_files, split_files, with_files
 from cnc_ptp.parameters.read.offset_files import with_offsets
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
@@ -67,6 +70,33 @@ def load_machine(text: str, file: str) -> MachineParameters:
     if problems:
         raise ParameterError(problems)
     return machine_view(machine, sets, tuple(machine_notices(machine, sets)), Path(file).parent)
+
+
+def examine_machine(text: str, file: str) -> tuple[list[Problem], list[Notice]]:
+    """Everything that there is to say about a machine at once.
+
+    Of a unit with problems, and of channels beside one, only the notices that need no other value. Raises
+    ParameterError for a text that is no parameters file.
+    """
+    text, files = split_files(text)
+    machine, sets, problems = read_parameters(text, file)
+    for node, parameters in sets.items():
+        if parameters.kind == "channel":
+            sets[node] = with_tables(parameters, sets, files, problems)
+    problems += check_machine(sets)
+    sound = sets if not problems else {node: axis for node, axis in sets.items() if is_sound(axis, sets, problems)}
+    notices = list(machine_notices(machine, sound))
+    for parameters in (sets[node] for node in sets if node not in sound):
+        notices += notices_without_view(parameters, machine.kernel(ids.CYCLE_TIME_US))
+    return sorted(problems, key=lambda problem: problem.place), notices
+
+
+def is_sound(parameters: ParameterSet, sets: Sets, problems: Sequence[Problem]) -> bool:
+    """An axis or spindle whose section has no problem in it; channels depend on all of them."""
+    begins = sorted(other.place.line for other in sets.values() if other.place.line > parameters.place.line)
+    end = begins[0] if begins else math.inf
+    touched = any(parameters.place.line <= problem.place.line < end for problem in problems)
+    return parameters.kind != "channel" and not touched
 
 
 def with_tables(channel: ParameterSet, sets: Sets, files: Mapping[str, str], problems: list[Problem]) -> ParameterSet:

@@ -181,7 +181,7 @@ ARGUMENT_TEXTS: Mapping[str, ArgumentText] = {
     "level": ArgumentText("", "skip level 1 … 10 (`/` is `/1`)", "1"),
     "id": ArgumentText("", "number of the request"),
     "name": ArgumentText("", "of the input"),
-    "parameter": ArgumentText("", "P-AXIS-00236 or P-MACH-00014"),
+    "parameter": ArgumentText("", "P number or name: P-AXIS-00099, P-COMP-00046.2, getriebe[0].kv"),
     "idn": ArgumentText("", "`S-0-` and four digits"),
     "axes": ArgumentText("", "names of the axes"),
     "points": ArgumentText("s, mm, °", "rows time, positions, velocities, accelerations; each a list of all axes"),

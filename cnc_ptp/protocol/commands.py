@@ -134,7 +134,7 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "set_coupling_factor": {"factor": NUMBER},
         "set_cyclic_factor": {"factor": NUMBER},
         "decouple": {"target": OPTIONAL_NUMBER, "velocity": OPTIONAL_POSITIVE},
-        "write_parameter": {"parameter": TEXT, "value": NUMBER},
+        "write_parameter": {"parameter": TEXT, "value": NUMBER, "by_path": OPTIONAL_SWITCH},
         "set_feedforward": FEEDFORWARD,
         "reset_feedforward": {},
         "set_friction_compensation": {"enabled": SWITCH},
@@ -288,8 +288,8 @@ NEEDS_SOMETHING = {"set_limits": "reset_limits takes the limits away"}
 """Commands that would release something when nothing is given, and how to do so explicitly."""
 OF_PLC = frozenset({"above", "master_stands", "master_lost"})
 """Arguments of couplings that the PLC fills in; only a refusal can come of them, so that they are not recorded."""
-OF_CHANNELS = frozenset({"own", "homes", "owner"})
-"""Arguments of spindle commands that only channels give; neither services nor scenarios have them."""
+OF_CHANNELS = frozenset({"own", "homes", "owner", "by_path"})
+"""Arguments that only channels give; neither services nor scenarios have them."""
 
 FILE_CONTENTS = frozenset({"table", "setpoints"})
 """Arguments that a file may hold: its reader gives them instead of `file`."""

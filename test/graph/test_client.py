@@ -429,14 +429,14 @@ def test_diagnostics(client):
 
 
 def test_parameters(client):
-    ask, name = client.ask, "getriebe.0.kv"
+    ask, name = client.ask, "getriebe.0.incr_per_rev"
     assert name in ask(ListParameters, "/x/list_parameters").result.names
     descriptor = ask(DescribeParameters, "/x/describe_parameters", names=[name]).descriptors[0]
     assert descriptor.read_only and descriptor.type == ParameterType.PARAMETER_INTEGER
-    assert "P-AXIS-00099" in descriptor.description
+    assert "P-AXIS-00092" in descriptor.description
     assert descriptor.integer_range[0].from_value >= 0 and descriptor.integer_range[0].to_value > 5000
     value = ask(GetParameters, "/x/get_parameters", names=[name]).values[0]
-    assert value.integer_value == 5000
+    assert value.integer_value == 1048576
     wanted = ParameterValue(type=ParameterType.PARAMETER_INTEGER, integer_value=1)
     parameters = [Parameter(name=name, value=wanted)]
     result = ask(SetParameters, "/x/set_parameters", parameters=parameters).results[0]

@@ -6,6 +6,10 @@ import pytest
 from action_msgs.msg import GoalStatus
 from client_support import beside_composed_run
 from graph_support import PTP
+from rcl_interfaces.msg import Parameter as RosParameter
+from rcl_interfaces.msg import ParameterType
+from rcl_interfaces.msg import ParameterValue as RosValue
+from rcl_interfaces.srv import GetParameters, SetParametersAtomically
 
 from cnc_ptp import action
 from cnc_ptp.nodes.bridge.function_blocks import INPUTS, POINTS
@@ -141,8 +145,53 @@ def test_a_parameter_is_written_by_block_and_by_service(client):
     goal, _ = begin(client, "x", "MC_WriteParameter", parameter="P-AXIS-00236", value=5.0)
     assert ended(client, goal) == (SUCCEEDED, DONE)
     client.done("x", "write_parameter", parameter="P-AXIS-00236", value=500.0)
-    refused = client.call("x", "write_parameter", parameter="P-AXIS-00001", value=5.0)
+    assert ros_value(client, "getriebe.0.window").integer_value == 500
+    refused = client.call("x", "write_parameter", parameter="P-AXIS-00015", value=5.0)
     assert refused.error_id == 23095 and "write_parameter" in SERVICES["axis"]
+
+
+def ros_value(client, name):
+    return client.ask(GetParameters, "/x/get_parameters", names=[name]).values[0]
+
+
+def set_parameter(client, **values):
+    """`ros2 param set /x NAME VALUE`: the answer."""
+    wanted = [
+        RosParameter(name=name, value=RosValue(type=ParameterType.PARAMETER_INTEGER, integer_value=value))
+        for name, value in values.items()
+    ]
+    return client.ask(SetParametersAtomically, "/x/set_parameters_atomically", parameters=wanted).result
+
+
+def test_a_parameter_is_set_by_ros(client):
+    """At a standstill, as a recorded command; refusals leave the value as it is."""
+    records = len(client.records)
+    assert set_parameter(client, **{"getriebe.0.kv": 40000}).successful
+    assert ros_value(client, "getriebe.0.kv").integer_value == 40000
+    client.spin_until(lambda: len(client.records) > records, "the record")
+    record = client.records[-1]
+    assert (record.command, record.accepted) == ("write_parameter", True)
+    assert record.arguments_json == '{"parameter": "getriebe.0.kv", "value": 40000.0}'
+    one_by_one = set_parameter(client, **{"getriebe.0.kv": 30000, "getriebe.0.window": 5})
+    assert one_by_one.reason == "x: parameters are set one by one; nothing was changed"
+    assert "read-only" in set_parameter(client, **{"kenngr.achs_mode": 4}).reason
+    assert not set_parameter(client, **{"getriebe.0.kv": 0}).successful
+    ascending = set_parameter(client, **{"vorsteuer.vs_v_nenner": 0})
+    assert ascending.reason == (
+        "P-ERR-23096 axis x: write_parameter refused: axis list, P-AXIS-00229 vorsteuer.vs_v_nenner of /x: value 0 is "
+        "not a valid denominator; nothing was changed"
+    )
+    goal, _ = begin(client, "x", "MC_MoveVelocity", velocity=10.0)
+    client.wait_last("x", lambda block: block.set_velocity[-1] > 0.0, "motion")
+    moving = set_parameter(client, **{"getriebe.0.kv": 30000})
+    assert moving.reason == (
+        "P-ERR-23097 axis x: write_parameter refused: P-AXIS-00099 (getriebe[i].kv) is written at a standstill only, the "
+        "axis is in ContinuousMotion; nothing was changed"
+    )
+    goal.cancel_goal_async()
+    client.wait_last("x", lambda block: block.set_velocity[-1] == 0.0, "standstill")
+    assert ros_value(client, "getriebe.0.kv").integer_value == 40000
+    assert ros_value(client, "vorsteuer.vs_v_nenner").integer_value == 1
 
 
 def test_a_goal_that_is_open_at_the_end_of_the_run(client):

@@ -32,7 +32,7 @@ def test_one_descriptor_in_full(descriptors: dict[str, dict[str, RosDescriptor]]
         unit="0.01/s",
         text="Gain of the proportional position controller.",
         number="P-AXIS-00099",
-        read_only=True,
+        read_only=False,
         constraints="0 < … ≤ 4294967295",
     )
     assert descriptor.description == "P-AXIS-00099 [0.01/s] Gain of the proportional position controller."

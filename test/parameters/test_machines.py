@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from cnc_ptp.parameters import ChannelAxis, ChannelSpindle, Synchronisation, read_machine
+from cnc_ptp.parameters import ChannelSpindle, Synchronisation, read_machine
 
 CONFIG = Path(__file__).parents[2] / "config"
 
@@ -46,7 +46,7 @@ def test_mill() -> None:
 def test_channel_of_the_mill() -> None:
     channel = read_machine(CONFIG / "mill.yaml").channels["channel"]
     wait, tell = Synchronisation.MVS_SVS, Synchronisation.MOS
-    assert channel.axes == (ChannelAxis("X", "x"), ChannelAxis("Y", "y"), ChannelAxis("Z", "z"))
+    assert [axis[:2] for axis in channel.axes] == [("X", "x"), ("Y", "y"), ("Z", "z")]
     assert channel.spindles == (
         ChannelSpindle("S", "s", wait, wait, wait, Synchronisation.NO_SYNCH, tell, own_name="S1", number=4),
     )

@@ -10,18 +10,20 @@ import pytest
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import load_machine
 from cnc_ptp.parameters.declare.declarations import catalogue
-from cnc_ptp.parameters.declare.reference import entry_text, find, reference_markdown
+from cnc_ptp.parameters.declare.reference import change_text, entry_text, find, reference_markdown
 
 ROOT = Path(__file__).parents[2]
 KV = """\
 P-AXIS-00099  getriebe[i].kv
   Gain of the proportional position controller.
-  list     axis, axis types TRS
+  list     axis, position controller; axis types TRS
   type     UNS32 (int)
   range    0 < … ≤ 4294967295
   unit     0.01/s
   default  1000
-  source   spindle p.74"""
+  in 1/s   0 < … ≤ 42949672.95; default 10
+  change   CHANGE
+  source   spindle p.74""".replace("CHANGE", change_text(catalogue().by_id["P-AXIS-00099"]))
 
 
 def describe(wanted: str) -> str:
@@ -85,6 +87,40 @@ def test_forms_of_ranges() -> None:
     assert "range" not in describe("P-MACH-00005")
     assert "default  []" in describe("P-MACH-00005")
     assert "  Accepted and checked, but without effect in this version." in describe("P-AXIS-00179").splitlines()
+
+
+@pytest.mark.parametrize(
+    ("number", "lines"),
+    [
+        (
+            "P-AXIS-00209",
+            [
+                "in mm/s  0.001 ≤ … ≤ P-AXIS-00212; default 166.666",
+                "in °/s   0.001 ≤ … ≤ P-AXIS-00212; default 166.666",
+            ],
+        ),
+        ("P-AXIS-00217", ["in %     0 ≤ … ≤ 100; default 10"]),
+        ("P-AXIS-00389", ["in s     0 ≤ … ≤ 0.065535; default 0"]),
+        (
+            "P-AXIS-00178",
+            [
+                "in mm    P-AXIS-00177 < … ≤ 214748.3647; default 10000",
+                "in °     P-AXIS-00177 < … ≤ 214748.3647; default 10000",
+            ],
+        ),
+        ("P-AXIS-00001", []),
+        ("P-AXIS-00223", []),
+    ],
+)
+def test_ranges_in_the_units_of_people(number: str, lines: list[str]) -> None:
+    found = [line.strip() for line in describe(number).splitlines() if line.startswith("  in ")]
+    assert found == lines
+
+
+def test_drive_types_versions_and_times_of_change_are_lines_of_their_own() -> None:
+    assert "  drives   SERCOS, CANopen" in describe("P-AXIS-00522").splitlines()
+    assert "  since    V3.1.3079.06" in describe("P-COMP-00062").splitlines()
+    assert "  change   at start-up only (as the manual has it)" in describe("P-COMP-00062").splitlines()
 
 
 def test_drive_types_are_as_the_control_document_has_them() -> None:

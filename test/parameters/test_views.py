@@ -7,7 +7,6 @@ import pytest
 
 from cnc_ptp.parameters import (
     AxisParameters,
-    ChannelAxis,
     ChannelParameters,
     ChannelSpindle,
     MachineParameters,
@@ -247,7 +246,7 @@ def test_logical_numbers_that_the_file_leaves_out() -> None:
 
 def test_channel_of_defaults_has_everything() -> None:
     view = channel()
-    assert view.axes == (ChannelAxis("X", "x"), ChannelAxis("Y", "y"), ChannelAxis("C", "c"))
+    assert [axis[:2] for axis in view.axes] == [("X", "x"), ("Y", "y"), ("C", "c")]
     assert view.spindles == (
         ChannelSpindle("S", "s", NONE, NONE, NONE, NONE, NONE, own_name="S", number=4),
         ChannelSpindle("S2", "t", NONE, NONE, NONE, NONE, NONE, own_name="S2", number=5),
@@ -267,7 +266,7 @@ def test_channel_with_lists() -> None:
         "max_vb_override: 1500, mittelpkt_diff: 1000, mittelpkt_faktor: 5",
     )
     plc = Synchronisation.PLC_INFO | Synchronisation.MVS_SVS
-    assert view.axes == (ChannelAxis("X", "x"), ChannelAxis("C1", "c"))
+    assert [axis[:2] for axis in view.axes] == [("X", "x"), ("C1", "c")]
     assert view.spindles == (
         ChannelSpindle("S1", "s", plc, NONE, NONE, NONE, NONE, own_name="S1", number=4),
         ChannelSpindle("SMAIN", "t", NONE, NONE, NONE, Synchronisation.MNS_SNS, NONE, own_name="S2", number=5),
@@ -288,8 +287,8 @@ def test_channel_without_spindle() -> None:
 def test_a_channel_that_lists_no_axes_gets_those_that_no_other_lists() -> None:
     section = "/a: {ros__parameters: {gruppe.0.achse.0.log_achs_nr: 1}}"
     machine = load(section, channels=["a", "b"], axes=["x", "y"])
-    assert machine.channels["a"].axes == (ChannelAxis("X", "x"),)
-    assert machine.channels["b"].axes == (ChannelAxis("Y", "y"),)
+    assert [axis[:2] for axis in machine.channels["a"].axes] == [("X", "x")]
+    assert [axis[:2] for axis in machine.channels["b"].axes] == [("Y", "y")]
 
 
 def test_a_spindle_serves_several_channels() -> None:

@@ -363,13 +363,12 @@ def test_two_runs_are_equal_and_the_recorded_commands_reproduce_one_without_the_
 def test_write_parameter_of_an_axis() -> None:
     bench = PlcBench(lambda io: Steps(lambda io: None)).run(0.02)
     assert bench.give("x", "write_parameter", parameter="P-AXIS-00236", value=700).accepted
-    assert bench.refused("x", "write_parameter", parameter="P-AXIS-00099", value=1) == (
-        "P-ERR-23095 axis x: write_parameter refused: P-AXIS-00099 (getriebe[i].kv) cannot be written at run time; "
-        "P-AXIS-00236 and P-MACH-00014 can be written; nothing was changed"
+    assert bench.refused("x", "write_parameter", parameter="P-AXIS-00103", value=1) == (
+        "P-ERR-23095 axis x: write_parameter refused: P-AXIS-00103 (getriebe[i].lose) cannot be written at run time, "
+        "it is taken over at start-up only; nothing was changed"
     )
-    assert bench.refused("x", "write_parameter", parameter="kv", value=1) == (
-        "P-ERR-23095 axis x: write_parameter refused: 'kv' is no number of a parameter; "
-        "P-AXIS-00236 and P-MACH-00014 can be written; nothing was changed"
+    assert bench.refused("x", "write_parameter", parameter="kvv", value=1) == (
+        "P-ERR-23095 axis x: write_parameter refused: axis /x has no parameter 'kvv'; nothing was changed"
     )
     assert bench.refused("x", "write_parameter", parameter="P-MACH-00014", value=-1) == (
         "P-ERR-23096 axis x: write_parameter refused: P-MACH-00014 ptp.target_time_ms: value -1 is below the minimum "

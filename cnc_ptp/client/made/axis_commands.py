@@ -477,7 +477,7 @@ class AxisCommands(Asking):
     def write_parameter(self, parameter: str, value: float) -> Answer:
         """Changes a parameter until the end of the run.
 
-        parameter  P-AXIS-00236 or P-MACH-00014
+        parameter  P number or name: P-AXIS-00099, P-COMP-00046.2, getriebe[0].kv
         value  in the unit of its list
         """
         return self._answer("write_parameter", parameter=parameter, value=value)

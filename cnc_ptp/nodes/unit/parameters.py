@@ -1,7 +1,8 @@
-"""ROS parameters of a node: the whole list of its unit, read-only, each with descriptor."""
+"""ROS parameters of a node: the whole list of its unit, each with descriptor; a few can be set while it runs."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable
 from typing import Any
 
@@ -13,12 +14,15 @@ from rcl_interfaces.msg import (
     SetParametersResult,
 )
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import MachineParameters, ParameterSet, RosDescriptor, ros_descriptors
 from cnc_ptp.parameters.check.runtime_change import change_refusal, start_refusal
 from cnc_ptp.parameters.declare.declarations import dotted
 from cnc_ptp.parameters.read.values import shown
+from cnc_ptp.parameters.view.by_name import parameter_by_name
+from cnc_ptp.protocol.blocks import Command, CommandRecord
 from cnc_ptp.ros_arguments import REFUSED
 
 TYPES = {
@@ -28,6 +32,7 @@ TYPES = {
     "string": ParameterType.PARAMETER_STRING,
     "strings": ParameterType.PARAMETER_STRING_ARRAY,
 }
+WRITE = "write_parameter"
 BARE_WORDS = "ROS takes y, n, yes, no, on, off without quotes for true and false"
 
 
@@ -79,8 +84,27 @@ def refused_change(own: ParameterSet, wanted: Iterable[Any]) -> SetParametersRes
     for parameter in wanted:
         error = change_refusal(own, parameter.name, parameter.value)
         if error is not None:
-            return SetParametersResult(successful=False, reason=str(error))
+            return refusal(str(error))
     return None
+
+
+def refusal(reason: str) -> SetParametersResult:
+    return SetParametersResult(successful=False, reason=reason)
+
+
+def write_command(unit: str, parameter: Any) -> Command:
+    """The command with which a unit takes a new value; all that can change are numbers and switches."""
+    return Command(unit, WRITE, {"parameter": parameter.name, "value": float(parameter.value)})
+
+
+def written_parameter(own: ParameterSet, record: CommandRecord) -> Parameter[Any] | None:
+    """The ROS parameter that an accepted command has written; None for other commands."""
+    if record.command != WRITE or not record.accepted:
+        return None
+    arguments = json.loads(record.arguments_json)
+    found = parameter_by_name(own, arguments["parameter"])
+    kinds: dict[str, type] = {"int": int, "bool": bool, "float": float}
+    return Parameter(found.ros_name, value=kinds[found.declaration.type](arguments["value"]))
 
 
 def _value(entry: RosDescriptor) -> Any:

@@ -5,13 +5,14 @@ from __future__ import annotations
 import socket
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
 from typing import Any
 
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray
+from rcl_interfaces.msg import SetParametersResult
 from rclpy.subscription import Subscription
 from rclpy.timer import Timer
 
@@ -45,7 +46,7 @@ from cnc_ptp.nodes.topics import (
 from cnc_ptp.nodes.unit.claim import claim_unit
 from cnc_ptp.nodes.unit.diagnostics import UnitDiagnostics
 from cnc_ptp.nodes.unit.live_state import LiveState, period_cycles
-from cnc_ptp.nodes.unit.parameters import declare_parameters, refused_change
+from cnc_ptp.nodes.unit.parameters import declare_parameters, refusal, refused_change, write_command, written_parameter
 from cnc_ptp.nodes.unit.requests import RUN_OVER, given_arguments, objection
 from cnc_ptp.nodes.watchdog import Watchdog
 from cnc_ptp.parameters import MachineParameters
@@ -78,7 +79,8 @@ class UnitNode(PollingNode):
     Publishers: /<name>/block, /events and /rosout, /commands, /clock/report, /heartbeat; once per second /diagnostics
     and /lateness; while somebody subscribes /<name>/state.
     Services: /<name>/<command> for the commands of its kind (topics.SERVICES).
-    Parameters: all of its list, read-only, with range, unit and P number as descriptor.
+    Parameters: all of its list, with range, unit and P number as descriptor; what can change while the unit runs
+    (docs/parameters.md) can be set, the others are read-only.
     """
 
     def __init__(
@@ -131,6 +133,8 @@ class UnitNode(PollingNode):
         self._claim: socket.socket | None = None
         self._machine = machine
         self._own_name = MACHINE if unit.kind == PLC else unit.name
+        self._shows_written = False
+        """ROS takes over what the unit has already, or is about to have."""
 
     def setup(self) -> None:
         """Claims the unit, declares its parameters, makes topics, services and timers.
@@ -143,6 +147,7 @@ class UnitNode(PollingNode):
             super().destroy_node()
             raise
         declare_parameters(self, self._machine, self._own_name)
+        self.add_on_set_parameters_callback(self._write_parameters)
         self._make_publishers()
         self._make_subscriptions()
         self._make_services()
@@ -201,9 +206,26 @@ class UnitNode(PollingNode):
         return self.poll(message_type, topic, take, BLOCKS)
 
     def set_parameters_atomically(self, parameter_list: Any) -> Any:
-        """Refuses: all parameters are read-only; some with a special reason."""
+        """Refuses what cannot change, some of it with a special reason."""
         refused = refused_change(self._machine.raw(self._own_name), parameter_list)
         return refused or super().set_parameters_atomically(parameter_list)
+
+    def _write_parameters(self, wanted: Sequence[Any]) -> SetParametersResult:
+        """ROS has found them in order: the unit takes them by a command, which is recorded, or refuses.
+
+        Several at once are refused: the second one could fail when the first one has been taken already.
+        """
+        if self._shows_written:
+            return SetParametersResult(successful=True)
+        if len(wanted) != 1:
+            return refusal(f"{self.unit.name}: parameters are set one by one; nothing was changed")
+        self._shows_written = True
+        record = self.command(write_command(self.unit.name, wanted[0]))
+        self._shows_written = False
+        if not record.accepted:
+            return refusal(f"P-ERR-{record.error_id} {record.message}")
+        self._compute_ready_blocks()
+        return SetParametersResult(successful=True, reason=record.message)
 
     def _make_services(self) -> None:
         for command, service_type in SERVICES[self.unit.kind].items():
@@ -411,10 +433,19 @@ class UnitNode(PollingNode):
 
     def _publish_records(self) -> None:
         for record in self.unit.take_records():
+            self._show_written(record)
             self._record_publisher.publish(convert.record_to_message(record, self.stamp(record.cycle)))
         for event in self.unit.take_events():
             self.diagnostics.note(event)
             self._event_publisher.publish(convert.event_to_message(event, self.stamp(event.cycle)))
+
+    def _show_written(self, record: CommandRecord) -> None:
+        """A parameter that somebody else has written is what ROS shows from now on."""
+        shown = None if self._shows_written else written_parameter(self._machine.raw(self._own_name), record)
+        if shown is not None and self.has_parameter(shown.name):
+            self._shows_written = True
+            super().set_parameters_atomically([shown])
+            self._shows_written = False
 
     # watchdog
 

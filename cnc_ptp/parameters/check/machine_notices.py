@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from cnc_ptp.parameters.check.control_notices import control_notices
+from cnc_ptp.parameters.check.control_notices import control_notices, delays, monitoring_type, position_delay
 from cnc_ptp.parameters.check.friction_notices import friction_notices
 from cnc_ptp.parameters.check.spindle_checks import above_control_limit
 from cnc_ptp.parameters.declare import ids
@@ -45,6 +45,16 @@ def machine_notices(machine: ParameterSet, sets: Sets) -> Iterator[Notice]:
             yield from gear_ratio_without_effect(parameters)
             yield from range_of_a_conveyor(parameters)
             yield from spindle_notices(parameters)
+
+
+def notices_without_view(parameters: ParameterSet, cycle_time: float) -> Iterator[Notice]:
+    """Those of a unit that has problems, too: each is about a value alone."""
+    yield from without_effect(parameters)
+    if parameters.kind != "channel":
+        yield from delays(parameters, cycle_time)
+        yield from position_delay(parameters)
+        yield from monitoring_type(parameters)
+        yield from corrected_resolution(parameters)
 
 
 def units_without_section(machine: ParameterSet, sets: Sets) -> Iterator[Notice]:

@@ -31,6 +31,16 @@ LISTS = ("axis", "channel", "startup", "zero", "clamp", "compensation", "tool", 
 OF_CHANNELS = ("channel", "startup", "zero", "clamp", "tool")
 NODE_KINDS = ("machine", "channel", "axis", "spindle")
 AXIS_LETTERS = {"T": "linear axes", "R": "rotary axes", "S": "spindles"}
+DRIVE_NUMBERS = {
+    "conventional": 1,
+    "SERCOS": 2,
+    "PROFIDRIVE": 3,
+    "simulation": 4,
+    "Lightbus": 5,
+    "terminal": 6,
+    "CANopen": 8,
+}
+"""Drive types as `drives` names them -> P-AXIS-00020."""
 
 
 LONGEST_INDEX = 1000
@@ -72,6 +82,13 @@ class Declaration:
     """Shown instead of the limits, if a separate check with its own error number handles them."""
     drives: str
     """Drive types for which the manual lists it; empty: all."""
+    since: str
+    """Version of the CNC that brought it; empty where the manual says nothing."""
+    topic: str
+    """What it is about: one of a few words for each list."""
+    change: str
+    """When a new value takes effect in a running machine: now, standstill; start: at start-up only, as the manual has
+    it; empty: at start-up only in this version. Axis types behind it: for these only."""
     names: Mapping[str, int]
     """Constants for the bits of a number; the lists may use them, joined by |."""
     misprints: tuple[str, ...]
@@ -81,6 +98,11 @@ class Declaration:
     def type(self) -> str:
         """int, float, bool, string or strings."""
         return DATA_TYPES[self.data_type][0]
+
+    @property
+    def drive_types(self) -> tuple[int, ...]:
+        """Values of P-AXIS-00020 for which the manual lists it; empty: all."""
+        return tuple(DRIVE_NUMBERS[name] for name in self.drives.split(", ") if name)
 
     @property
     def key(self) -> str:
@@ -118,6 +140,11 @@ class Declaration:
     def effective_for(self, axis_type: str) -> bool:
         """Whether it has an effect on an axis of type T, R or S, or on a node without axis type."""
         return axis_type in self.effective if isinstance(self.effective, str) else self.effective
+
+    def change_for(self, axis_type: str) -> str:
+        """`change` for an axis of type T, R or S, or for a node without axis type."""
+        when, _, letters = self.change.partition(" ")
+        return "" if letters and axis_type not in letters else when
 
     def unit_for(self, axis_type: str) -> str:
         """Unit for an axis of type T, R or S."""
@@ -208,6 +235,9 @@ def make_declaration(number: str, entry: Mapping[str, Any]) -> Declaration:
         read_only=entry.get("read_only", True),
         range=entry.get("range", ""),
         drives=entry.get("drives", ""),
+        since=entry.get("since", ""),
+        topic=entry["topic"],
+        change=entry.get("change", ""),
         names=entry.get("names", {}),
         misprints=tuple(entry.get("misprints", ())),
     )

@@ -1,6 +1,9 @@
 """Ranges and defaults in words, for the reference and ROS descriptors."""
 
+from collections.abc import Iterable
+
 from cnc_ptp.parameters.declare.declarations import DATA_TYPES, Declaration, Limit, ParameterValue
+from cnc_ptp.parameters.list_units import SHOWN_UNITS
 
 
 def range_text(declaration: Declaration) -> str:
@@ -28,10 +31,30 @@ def choices_text(declaration: Declaration) -> str:
 
 def limits_text(declaration: Declaration) -> str:
     """'0 < … ≤ 1000'; the end of the data type is left out if there is another limit."""
-    lower, upper = (written_limits(declaration, limits) for limits in (declaration.lower, declaration.upper))
+    return bounds_text(*(written_limits(declaration, limits) for limits in (declaration.lower, declaration.upper)))
+
+
+def bounds_text(lower: Iterable[Limit], upper: Iterable[Limit]) -> str:
     left = "".join(f"{limit.value} {'≤' if limit.inclusive else '<'} " for limit in lower)
     right = "".join(f" {'≤' if limit.inclusive else '<'} {limit.value}" for limit in upper)
     return f"{left}…{right}" if left or right else ""
+
+
+def shown_range(declaration: Declaration, axis_type: str) -> tuple[str, str, str]:
+    """Unit in which people think of it, range and default in it: (1/s, 0 < … ≤ 42949672.95, 10); empty without one."""
+    unit, factor = SHOWN_UNITS.get(declaration.unit_for(axis_type), ("", 1))
+    if not unit or isinstance(declaration.default, (str, tuple)) or declaration.choices:
+        return "", "", ""
+    lower, upper = (
+        tuple(limit._replace(value=shown_number(limit.value, factor)) for limit in written_limits(declaration, limits))
+        for limits in (declaration.lower, declaration.upper)
+    )
+    return unit, bounds_text(lower, upper), shown_number(declaration.default, factor)
+
+
+def shown_number(value: float | str, factor: int) -> str:
+    """A number of the list in larger units; an id stays an id."""
+    return value if isinstance(value, str) else f"{value / factor:.12g}"
 
 
 def written_limits(declaration: Declaration, limits: tuple[Limit, ...]) -> list[Limit]:

@@ -7,8 +7,9 @@ from collections.abc import Callable, Iterator
 
 from cnc_ptp.errors import CncError, did_you_mean, nearest
 from cnc_ptp.parameters import errors
+from cnc_ptp.parameters.declare import where
 from cnc_ptp.parameters.declare.declarations import AXIS_LETTERS, LISTS, Declaration, catalogue, dotted
-from cnc_ptp.parameters.declare.ranges import default_text, range_text
+from cnc_ptp.parameters.declare.ranges import default_text, range_text, shown_range
 
 HEADLINES = {
     "axis": "Axis list (axes and spindles)",
@@ -21,6 +22,13 @@ HEADLINES = {
     "simulation": "Simulation list (axes and spindles; our own)",
     "machine": "Machine list (`/machine`; those under `ptp` belong to axes; our own)",
 }
+CHANGES = {
+    "now": "while the machine runs, at once",
+    "standstill": "while the machine runs, at a standstill",
+    "start": "at start-up only (as the manual has it)",
+    "": "at start-up only",
+}
+"""When a new value takes effect."""
 INTRODUCTION = """\
 # Parameters
 
@@ -33,12 +41,16 @@ A machine file is a ROS parameters file. `/machine` names the nodes, each node h
 
 `getriebe[0].kv` of the lists is `getriebe: {"0": {kv: …}}` or `getriebe.0.kv` in the file and in ROS. Integers are
 decimal or `0x…`; flags are constants joined by `|` or one number; booleans are true, false, 1 or 0. A parameter that
-the file does not give has its default, cut to the limits that the file gives. All are read-only while a node runs.
+the file does not give has its default, cut to the limits that the file gives.
 Quote the name "y": ROS reads a bare y (and n) as a boolean.
 
 The kernel works in mm, ° and s. Units with two entries are for linear axes / rotary axes and spindles.
 Axis types: T linear, R rotary, S spindle. A range with an id in it ends at the value of that parameter.
-**—** in the last column: accepted and checked, without effect in this version; *S only*: in effect for spindles only.
+Behind the meaning, **—**: accepted and checked, without effect in this version; *S only*: in effect for spindles only.
+*acts in*: sections of these documents that name the parameter, and the module that reads it.
+
+*change* says when a new value takes effect in a machine that runs ([how](plc.md#parameters-at-run-time)): *now*;
+*standstill*, of the axis; *start*, at start-up only, as the manuals have it. All others: at start-up only, too.
 """
 
 
@@ -54,16 +66,21 @@ def array_lines() -> Iterator[str]:
 
 
 def list_lines(list_name: str) -> Iterator[str]:
+    """The tables of a list, one for each topic."""
     yield f"## {HEADLINES[list_name]}\n"
-    yield "| id | name | type | range | unit | default | axes | meaning | |"
-    yield "|---|---|---|---|---|---|---|---|---|"
-    declarations = (entry for entry in catalogue().by_id.values() if entry.list_name == list_name)
-    for declaration in sorted(declarations, key=lambda entry: entry.id):
-        yield table_row(declaration)
-    yield ""
+    declarations = [entry for entry in catalogue().by_id.values() if entry.list_name == list_name]
+    for topic in dict.fromkeys(entry.topic for entry in declarations):
+        yield f"### {topic[0].upper()}{topic[1:]}\n"
+        yield "| id | name | type | range | unit | default | axes | change | meaning | | acts in |"
+        yield "|---|---|---|---|---|---|---|---|---|---|---|"
+        of_topic = (entry for entry in declarations if entry.topic == topic)
+        yield from (table_row(entry) for entry in sorted(of_topic, key=lambda entry: entry.id))
+        yield ""
 
 
 def table_row(declaration: Declaration) -> str:
+    drives = f" Drive types: {declaration.drives}." if declaration.drives else ""
+    since = f" Since {declaration.since}." if declaration.since else ""
     cells = (
         declaration.id,
         f"`{declaration.name}`",
@@ -72,10 +89,18 @@ def table_row(declaration: Declaration) -> str:
         unit_text(declaration),
         default_text(declaration.default),
         declaration.axes,
-        declaration.text + (f" Drive types: {declaration.drives}." if declaration.drives else ""),
+        declaration.change,
+        f"{declaration.text}{drives}{since}",
         effect_text(declaration),
+        where_text(declaration),
     )
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+
+
+def where_text(declaration: Declaration) -> str:
+    """Sections of the documents that name it, and the module that reads it."""
+    links = [section.link for section in where.sections_of(declaration)]
+    return "; ".join([*links, *(f"`{module}`" for module in where.modules_of(declaration)[:1])])
 
 
 def effect_text(declaration: Declaration) -> str:
@@ -144,16 +169,34 @@ def entry_text(declaration: Declaration) -> str:
     lines = [
         f"{declaration.id}  {declaration.name}",
         f"  {declaration.text}",
-        f"  list     {declaration.list_name}" + (f", axis types {declaration.axes}" if declaration.axes else ""),
+        f"  list     {declaration.list_name}, {declaration.topic}"
+        + (f"; axis types {declaration.axes}" if declaration.axes else ""),
         f"  type     {declaration.data_type} ({declaration.type})",
         f"  range    {range_text(declaration)}",
         f"  unit     {unit_text(declaration)}",
         f"  default  {default_text(declaration.default)}",
+        *shown_lines(declaration),
         f"  drives   {declaration.drives}",
+        f"  since    {declaration.since}",
+        f"  change   {change_text(declaration)}",
         f"  source   {declaration.source}",
         effect_line(declaration),
     ]
-    return "\n".join(line for line in lines if line.strip() not in ("", "range", "unit", "drives"))
+    return "\n".join(line for line in lines if line.strip() not in ("", "range", "unit", "drives", "since"))
+
+
+def change_text(declaration: Declaration) -> str:
+    """When a new value takes effect, and for which axes."""
+    when, _, letters = declaration.change.partition(" ")
+    return CHANGES[when] + (f", of {' and '.join(AXIS_LETTERS[letter] for letter in letters)}" if letters else "")
+
+
+def shown_lines(declaration: Declaration) -> Iterator[str]:
+    """Range and default in the units in which people think, for each axis type that has its own."""
+    lines = {shown_range(declaration, letter): None for letter in declaration.axes or "T"}
+    for unit, limits, default in lines:
+        if unit:
+            yield f"  in {unit:<5} {limits}; default {default}"
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """An axis as the kernel uses it, in the gear after start-up."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Annotated
 
 from cnc_ptp.parameters.declare import ids
@@ -85,6 +85,10 @@ class AxisParameters:
     homing: HomingParameters
     probe: ProbeParameters
     control: ControlParameters
+    channel: str = ""
+    """The channel whose path has the axis; empty: only the PLC moves it."""
+    raw: ParameterSet | None = field(default=None, repr=False, compare=False)
+    """All parameters of the axis in list units, of which the others are made."""
 
 
 def axis_view(parameters: ParameterSet, cycle_time: float) -> AxisParameters:
@@ -113,6 +117,7 @@ def axis_view(parameters: ParameterSet, cycle_time: float) -> AxisParameters:
         homing=homing,
         probe=probe_view(parameters),
         control=control_of_axis(parameters, homing, gear, cycle_time),
+        raw=parameters,
         **given_fields(AxisParameters, parameters, gear),
     )
 

@@ -25,10 +25,11 @@ GEAR_M_FUNCTIONS = range(40, 46)
 
 
 class ChannelAxis(NamedTuple):
-    """An axis of a channel: its name in programs ("X") and its node ("x")."""
+    """An axis of a channel: its name in programs ("X"), its node ("x"), its logical number."""
 
     name: str
     node: str
+    number: int = 0
 
 
 class ChannelSpindle(NamedTuple):
@@ -159,7 +160,7 @@ def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet], folder
     c_axis = channel.text(ids.DEFAULT_AX_NAME_OF_SPINDLE) if spindles else ""
     return ChannelParameters(
         name=channel.node,
-        axes=tuple(ChannelAxis(entry.name, str(entry.node)) for entry in axes),
+        axes=tuple(ChannelAxis(entry.name, str(entry.node), entry.number) for entry in axes),
         spindles=tuple(channel_spindle(channel, entry) for entry in spindles),
         main_spindle=next((entry.name for entry in spindles if entry.number == main), ""),
         m_functions=m_functions(channel),

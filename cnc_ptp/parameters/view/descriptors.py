@@ -44,7 +44,7 @@ def ros_descriptors(parameters: ParameterSet) -> list[RosDescriptor]:
             unit=parameter.declaration.unit_for(parameters.axis_type or "T"),
             text=parameter.declaration.text,
             number=parameter.declaration.id,
-            read_only=parameter.declaration.read_only,
+            read_only=parameter.declaration.change_for(parameters.axis_type) not in ("now", "standstill"),
             constraints=range_text(parameter.declaration),
         )
         for parameter in parameters.parameters()

@@ -4,8 +4,9 @@ max_velocity: Annotated[float, ids.DYNAMIK_VB_MAX]
 """
 
 from collections.abc import Callable
+from dataclasses import fields, is_dataclass, replace
 from functools import cache
-from typing import Annotated, Any, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, TypeVar, get_args, get_origin, get_type_hints
 
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.view.synchronisation import Synchronisation, synchronisation
@@ -24,6 +25,20 @@ def given_fields(view: type, parameters: ParameterSet, *indexes: int) -> dict[st
     `indexes` are those of the record (the gear, the spindle of a channel …); a parameter takes as many as it needs.
     """
     return {name: READERS[kind](parameters, number, *indexes) for name, kind, number in parameter_fields(view)}
+
+
+View = TypeVar("View")
+
+
+def with_changes(view: View, before: Any, after: Any) -> View:
+    """A view with what differs between two others of its class: a change of the list they were made of."""
+    changes: dict[str, Any] = {}
+    for name in (field.name for field in fields(view)):  # type: ignore[arg-type]
+        own, old, new = (getattr(each, name) for each in (view, before, after))
+        if old != new:
+            nested = is_dataclass(own) and type(own) is type(old) is type(new) and name != "raw"
+            changes[name] = with_changes(own, old, new) if nested else new
+    return replace(view, **changes)  # type: ignore[type-var]
 
 
 @cache

@@ -66,10 +66,12 @@ def with_equal_delays(
 ) -> tuple[dict[str, AxisParameters], dict[str, SpindleParameters]]:
     """The axes and the spindles of each channel behind delay lines of the same length: the longest that one needs.
 
+    Each axis gets the name of its channel.
     Otherwise they would leave their path by v · T for each cycle between them, a thread included.
     """
     late_axes, late_spindles = dict(axes), dict(spindles)
     for channel in channels:
+        late_axes |= {axis.node: replace(late_axes[axis.node], channel=channel.name) for axis in channel.axes}
         path = [late_axes[axis.node] for axis in channel.axes]
         turning = [late_spindles[spindle.node] for spindle in channel.spindles if spindle.node in spindles]
         controls = [axis.control for axis in path]

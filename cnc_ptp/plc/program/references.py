@@ -85,7 +85,7 @@ class Reference:
     def parameter(self, name: str) -> ParameterValue:
         """Value in the unit of its list, by P number or name. Raises CncError 22169."""
         found = parameter_by_name(self._parameters, name)
-        return self._written.get(found.declaration.id, found.value)
+        return self._written.get(found.ros_name, found.value)
 
     @property
     def error_id(self) -> int:
@@ -119,7 +119,8 @@ class Reference:
             if command.id == answer.id:
                 self._note(self._answers, ticket, answer)
                 if command.command == WRITE_PARAMETER and not answer.error_id:
-                    self._written[command.arguments["parameter"]] = command.arguments["value"]
+                    name = parameter_by_name(self._parameters, command.arguments["parameter"]).ros_name
+                    self._written[name] = command.arguments["value"]
                 del self._waiting[place]
                 return
 

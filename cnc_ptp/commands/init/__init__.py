@@ -1,0 +1,1 @@
+"""`cnc_ptp init`: machine files to begin with."""
