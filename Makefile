@@ -70,6 +70,8 @@ docs: setup $(VENV)/.docs
 	$(BIN)/python -m cnc_ptp.commands.language.reference > docs/nc_language.md
 	$(BIN)/python -m cnc_ptp.commands.language.reference iso > docs/iso_language.md
 	$(BIN)/python -m cnc_ptp.commands.language.grammar > tools/nc.tmLanguage.json
+	$(BIN)/python -m cnc_ptp.catalogue.collect > build/texts.yaml && cp build/texts.yaml cnc_ptp/catalogue/texts.yaml
+	$(BIN)/python -m cnc_ptp.catalogue.reference > docs/errors.md
 	$(BIN)/python -m figures.gallery > docs/gallery.md
 	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going -d build/site-cache docs build/site
 

@@ -60,9 +60,9 @@ def control_notices(parameters: ParameterSet, cycle_time: float) -> Iterator[Not
 def delays(parameters: ParameterSet, cycle_time: float) -> Iterator[Notice]:
     for number, error_id in DELAYS.items():
         if parameters.number(number) and not permitted_delay(parameters, number, cycle_time):
-            limit = f"{DELAY_CYCLES} interpolator cycles ({DELAY_CYCLES * cycle_time * 1e6:g} µs)"
-            text = f"delay {parameters.number(number)} µs is not below {limit}, 0 is used"
-            values = (("limit", DELAY_CYCLES * cycle_time * 1e6, "µs"),)
+            delay, cycles, limit = parameters.number(number), DELAY_CYCLES, DELAY_CYCLES * cycle_time * 1e6
+            text = f"delay {delay} µs is not below {cycles} interpolator cycles ({limit:g} µs), 0 is used"
+            values = (("limit", limit, "µs"),)
             yield notice(parameters, number, (), text, error_id=error_id, values=values)
 
 
