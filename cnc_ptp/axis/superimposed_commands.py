@@ -50,9 +50,10 @@ class SuperimposedCommands:
         limits, warning = axis.checks.rescaled_jerk(MOVE, axis.checks.dynamics(MOVE, {"velocity": velocity} | dynamics))
         self._check_sum(base, velocity)
         if abs(distance) < axis.parameters.encoder_increment or distance == 0.0:
-            increment = f"one encoder increment ({axis.parameters.encoder_increment} {axis.unit})"
-            text = f"axis {axis.name}: {MOVE} over {abs(distance):g} {axis.unit} is below {increment}; nothing is added"
-            return warning_text(BELOW_INCREMENT, text)
+            way, limit = abs(distance), axis.parameters.encoder_increment
+            increment = f"one encoder increment ({limit} {axis.unit})"
+            text = f"axis {axis.name}: {MOVE} over {way:g} {axis.unit} is below {increment}; nothing is added"
+            return warning_text(BELOW_INCREMENT, text, distance=way, limit=limit)
         self._queue.check_addition(cycle, distance)
         self._make_room(cycle, distance)
         self._start(cycle, distance, limits)

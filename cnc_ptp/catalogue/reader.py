@@ -226,7 +226,15 @@ def placeholder(value: ast.FormattedValue, behind: str) -> Placeholder:
         str(part.value) for part in getattr(value.format_spec, "values", []) if isinstance(part, ast.Constant)
     )
     is_number = bool(unit or NUMBER_FORMAT.match(spec)) or called_by_number(value.value)
-    return Placeholder(expression_name(value.value), is_number, unit[1] if unit else "", ast.unparse(value.value))
+    name, source = expression_name(value.value), ast.unparse(plain(value.value))
+    return Placeholder(name, is_number, unit[1] if unit else "", source)
+
+
+def plain(node: ast.expr) -> ast.expr:
+    """Without the functions that only show it."""
+    while isinstance(node, ast.Call) and called_name(node) in READ and node.args:
+        node = node.args[0]
+    return node
 
 
 def called_by_number(node: ast.expr) -> bool:

@@ -9,13 +9,17 @@ import ast
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
-from cnc_ptp.catalogue.reader import Placeholder, Reader, Template, expression_name
+from cnc_ptp.catalogue.reader import Placeholder, Reader, Template, assigned_before, expression_name, plain
 from cnc_ptp.catalogue.syntax import Module, called_name, modules
 
 LITERALS = range(20_000, 130_000)
 OTHER_CODES = ("ServiceError", "Idn")
 """What is made with numbers of SERCOS."""
 RAISED_BY_LITERAL = ("Fault", "CncError")
+NO_VALUES = ("where", "error_id", "values", "path_stop")
+"""Keywords of calls that are no values of the text."""
+MADE = ("lag_values", "beyond", "_missed_by")
+"""Functions that put values together."""
 TEXTS = ("text", "reason", "note", "message", "short", "warning", "missing", "why_too_far", "step")
 """Names of what is a text."""
 
@@ -58,8 +62,7 @@ def sites_of(module: Module) -> Iterator[Site]:
             ):
                 continue
             texts = [*parent.args, *(word.value for word in parent.keywords if word.arg == "effect")]
-            values = {word.arg or "**": ast.unparse(word.value) for word in parent.keywords}
-            yield site_of(module, node, number, called, texts, values)
+            yield site_of(module, node, number, called, texts, names_of(module, parent))
         elif isinstance(node, ast.Constant):
             yield from sites_of_row(module, node, parent)
         elif isinstance(parent, (ast.IfExp, ast.Assign)):
@@ -68,9 +71,10 @@ def sites_of(module: Module) -> Iterator[Site]:
             yield from sites_of_default(module, node, number, parent)
         elif isinstance(parent, (ast.Tuple, ast.Return, ast.FormattedValue)):
             texts = list(getattr(parent, "elts", []))
+            values = {name: source for each in texts for name, source in names_in(module, each).items()}
             if isinstance(parent, ast.FormattedValue):
                 texts = [module.parents[parent]]  # type: ignore[list-item]
-            yield site_of(module, node, number, type(parent).__name__, texts, {})
+            yield site_of(module, node, number, type(parent).__name__, texts, values)
 
 
 def sites_of_row(module: Module, node: ast.Constant, parent: ast.AST | None) -> Iterator[Site]:
@@ -110,7 +114,7 @@ def sites_of_table(module: Module, node: ast.Constant, table: str) -> Iterator[S
             for call in ast.walk(loop):
                 words = [word for word in getattr(call, "keywords", []) if word.arg == "error_id"]
                 if isinstance(call, ast.Call) and words and ast.unparse(words[0].value) in names:
-                    values = {word.arg or "**": ast.unparse(word.value) for word in call.keywords}
+                    values = names_of(module, call)
                     yield site_of(module, call, node.value, called_name(call), call.args, values)  # type: ignore[arg-type]
 
 
@@ -124,8 +128,7 @@ def sites_of_name(module: Module, number: int, parent: ast.AST) -> Iterator[Site
         name = ast.unparse(above.targets[0])
         for call in ast.walk(function):
             if isinstance(call, ast.Call) and any(ast.unparse(each) == name for each in call.args):
-                values = {word.arg or "**": ast.unparse(word.value) for word in call.keywords}
-                yield site_of(module, call, number, ast.unparse(call.func), call.args, values)
+                yield site_of(module, call, number, ast.unparse(call.func), call.args, names_of(module, call))
 
 
 def number_of(module: Module, node: ast.AST) -> int | None:
@@ -140,7 +143,7 @@ def site_of(
     module: Module, node: ast.AST, number: int, called: str, texts: list[ast.expr], values: Mapping[str, str]
 ) -> Site:
     function = module.function_of(node)
-    names = {source: name for name, source in values.items()}
+    names = {source: name for name, source in values.items() if name != "**"}
     found = []
     for text in texts:
         if text is not node:
@@ -148,6 +151,34 @@ def site_of(
     wanted = [template for template in found if " " in template.text] or told_elsewhere(texts, node)
     name = function.name if function is not None else ""
     return Site(number, module.name, node.lineno, name, called, tuple(dict.fromkeys(wanted)), frozenset(values))  # type: ignore[attr-defined]
+
+
+def names_of(module: Module, call: ast.Call) -> dict[str, str]:
+    """The names under which a call gives the values of its text, and their expressions; `**` for those handed on."""
+    named = [(word.arg, word.value) for word in call.keywords if word.arg and word.arg not in NO_VALUES]
+    found = {name: ast.unparse(plain(value)) for name, value in named}
+    given = [word.value for word in call.keywords if word.arg in ("values", None)] + call.args
+    for each in given:
+        found |= names_in(module, each)
+    return found
+
+
+def names_in(module: Module, node: ast.expr) -> dict[str, str]:
+    """Of a dict, or of a local name for one."""
+    if isinstance(node, ast.Dict):
+        keys = [key.value if isinstance(key, ast.Constant) else "**" for key in node.keys]
+        return {str(key): ast.unparse(plain(value)) for key, value in zip(keys, node.values, strict=True)}
+    if isinstance(node, ast.IfExp):
+        return names_in(module, node.body) | names_in(module, node.orelse)
+    function = module.function_of(node)
+    if isinstance(node, ast.Name) and function is not None and node.id in ("values", "named"):
+        found: dict[str, str] = {}
+        for statement in assigned_before(function, node):
+            found |= {"**": ""} if statement.value is None else names_in(module, statement.value)
+        return found or {"**": node.id}
+    handed_on = isinstance(node, (ast.Attribute, ast.Name)) and ast.unparse(node).endswith(("values", "named"))
+    made = isinstance(node, ast.Call) and called_name(node) in MADE
+    return {"**": ast.unparse(node)} if handed_on or made else {}
 
 
 def told_elsewhere(texts: list[ast.expr], node: ast.AST) -> list[Template]:
@@ -160,7 +191,7 @@ def told_elsewhere(texts: list[ast.expr], node: ast.AST) -> list[Template]:
 def named(template: Template, names: Mapping[str, str]) -> Template:
     """With the names under which the raise site gives the values."""
     parts = [
-        part if isinstance(part, str) else part._replace(name=names.get(part.source, part.name))
+        part if isinstance(part, str) else part._replace(name=names.get(part.source.lstrip("-"), part.name))
         for part in template.parts
     ]
     return Template(tuple(parts))

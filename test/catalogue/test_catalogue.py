@@ -12,11 +12,12 @@ import pytest
 
 from cnc_ptp.catalogue import CLASSES, SEVERITIES, catalogue, entry, neighbours, numbers_in, range_of
 from cnc_ptp.catalogue.collect import lines, templates
-from cnc_ptp.catalogue.reader import Template
+from cnc_ptp.catalogue.reader import Placeholder, Template
 from cnc_ptp.catalogue.reference import reference_markdown
 from cnc_ptp.catalogue.sources import Site, sites
 from cnc_ptp.commands.language.explain import explain
 from cnc_ptp.errors import CncError
+from cnc_ptp.protocol.event_values import MEANINGS, SAME, common_unit
 
 ROOT = Path(__file__).parents[2]
 CATALOGUE = ROOT / "cnc_ptp" / "catalogue"
@@ -237,3 +238,75 @@ def test_numbers_in_what_is_pasted() -> None:
     assert numbers_in("G61") == numbers_in("M0x") == numbers_in("") == []
     assert entry(1) is None
     assert neighbours(70395)[0].number == 70394
+
+
+# values of events
+
+ROOMS = (
+    "axis/",
+    "spindle/",
+    "channel/",
+    "path/",
+    "plc/plc_unit.py",
+    "plc/setpoint_queue.py",
+    "protocol/",
+    "control/commands.py",
+    "motion/",
+)
+"""Where errors and warnings are raised that become events."""
+IN_TEXT_ALONE = {
+    22032: "the unit of a rotary axis of the channel is chosen where it is raised",
+    22083: "what the block needs at its begin and at its end, beside what is missing",
+    22101: "two radii, beside what is missed",
+    23004: "a part of a text; the refusal has velocity and limit",
+    23011: "a part of a text; the refusal has velocity and limit",
+    23052: "the smallest step of a table, a constant",
+    23064: "what is wrong with a point of a trajectory is of many kinds; the text names it",
+    26121: "a note at the end of a run, no event",
+    120002: "the name of a limit",
+    120003: "the name of a limit",
+}  # fmt: skip
+"""Numbers of which a text has a number that is no value, and why."""
+
+
+def of_events() -> Iterator[tuple[Site, Placeholder]]:
+    for site in found():
+        if site.file.startswith(ROOMS) and site.call != "Fault" and site.number not in IN_TEXT_ALONE:
+            for template in site.templates:
+                yield from ((site, each) for each in template.placeholders if each.is_number)
+
+
+def test_numbers_of_a_text_are_values_of_its_event() -> None:
+    missing = {
+        f"{site.number} in cnc_ptp/{site.file}:{site.line}: {each.name} (pass it: values={{…}}, or as a keyword)"
+        for site, each in of_events()
+        if each.name not in site.values and "**" not in site.values
+    }
+    assert not missing
+
+
+def unit_of(site: Site, name: str) -> str | None:
+    """That an event gives a value; None where only the run knows."""
+    if MEANINGS[name].unit != SAME:
+        return MEANINGS[name].unit
+    if "argument" in site.values or "**" in site.values:
+        return None
+    return common_unit(dict.fromkeys(site.values, 0.0))
+
+
+def test_units_of_values_are_those_of_the_text() -> None:
+    """u in the text of a unit is mm or deg; a channel counts in mm, a spindle in deg."""
+    wrong, unknown = [], set()
+    for site, each in of_events():
+        if each.name not in site.values:
+            continue
+        if each.name not in MEANINGS:
+            unknown.add(each.name)
+            continue
+        unit = unit_of(site, each.name)
+        if each.unit and unit is not None and unit not in (each.unit, each.unit.replace("mm", "u").replace("deg", "u")):
+            wrong.append(
+                f"{site.number} {site.file}:{site.line} {each.name}: {each.unit} in the text, {unit} in the event"
+            )
+    assert not unknown, "name them in MEANINGS of cnc_ptp/protocol/event_values.py"
+    assert not wrong
