@@ -72,6 +72,8 @@ docs: setup $(VENV)/.docs
 	$(BIN)/python -m cnc_ptp.commands.language.grammar > tools/nc.tmLanguage.json
 	$(BIN)/python -m cnc_ptp.commands.machine_schema > tools/machine.schema.json
 	$(BIN)/python -m cnc_ptp.commands.scenario_schema > tools/scenario.schema.json
+	$(BIN)/python -m cnc_ptp.catalogue.collect > build/texts.yaml && cp build/texts.yaml cnc_ptp/catalogue/texts.yaml
+	$(BIN)/python -m cnc_ptp.catalogue.reference > docs/errors.md
 	$(BIN)/python -m figures.gallery > docs/gallery.md
 	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going -d build/site-cache docs build/site
 

@@ -174,6 +174,8 @@ setup(
     package_data={
         PACKAGE: [
             "parameters/declare/*.yaml",
+            "catalogue/*.yaml",
+            "catalogue/entries/*.yaml",
             "commands/language/*.yaml",
             "commands/init/*.yaml",
             "nc/cycles/*.nc",

@@ -218,9 +218,9 @@ def watch_command(machine: str | None, **options: Any) -> None:
 @click.argument("words", nargs=-1, required=True, metavar="WORD...")
 @DIALECT_OF_A_FILE
 def explain_command(**options: Any) -> None:
-    """Say what a word of the NC language means.
+    """Say what a word of the NC language or an error number means.
 
-    G61, M03, $FOR, #CS, SIN, V.A.ABS ...
+    G61, M03, $FOR, #CS, SIN, V.A.ABS ...; 70349, P-ERR-23004, or a whole line that a run has printed.
     """
     from cnc_ptp.commands.language.explain import explain
 

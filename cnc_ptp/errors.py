@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from difflib import get_close_matches
+from typing import Final
 
 Value = float | int | str
+NO_VALUES: Final[Mapping[str, Value]] = {}
+"""Of a text without numbers."""
 WRONG_INPUT = 2
 """Exit status after wrong usage or input; nothing was started."""
-_WARNING = re.compile(r"P-WARN-(\d+) ")
 
 
 class CncError(Exception):
@@ -64,12 +65,33 @@ def nearest_name(word: str, known: Iterable[str]) -> str:
     return did_you_mean(nearest(word, known))
 
 
-def warning_text(number: int, text: str) -> str:
-    """A warning as the record of a command that was carried out holds it; `number` 0 where it has none."""
-    return f"P-WARN-{number} {text}" if number else text
+class WarningText(str):
+    """A warning as the record of a command that was carried out shows it, with what it is made of."""
+
+    number: int
+    values: Mapping[str, Value]
+
+    def __new__(cls, shown: str, number: int, values: Mapping[str, Value]) -> WarningText:
+        warning = super().__new__(cls, shown)
+        warning.number, warning.values = number, values
+        return warning
 
 
-def read_warning(message: str) -> tuple[int, str]:
-    """Number and text of a `warning_text`."""
-    found = _WARNING.match(message)
-    return (int(found[1]), message[found.end() :]) if found else (0, message)
+def warning_text(number: int, text: str, /, **values: Value) -> WarningText:
+    """ "P-WARN-<number> <text>"; only the text for `number` 0. `values` of the text by name."""
+    return WarningText(f"P-WARN-{number} {text}" if number else text, number, values)
+
+
+def joined_warnings(*warnings: str | None) -> WarningText | None:
+    """Several warnings of one command, as one with the number and the values of the first that has a number."""
+    given = [warning for warning in warnings if warning]
+    numbered = [warning for warning in given if isinstance(warning, WarningText) and warning.number]
+    if not given:
+        return None
+    first = numbered[0] if numbered else warning_text(0, "")
+    return WarningText("; ".join(given), first.number, first.values)
+
+
+def plain_text(number: int, shown: str) -> str:
+    """The text of a warning without the number in front of it."""
+    return shown.removeprefix(f"P-WARN-{number} ")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from math import copysign, isfinite, sqrt
 from typing import NoReturn
 
@@ -23,7 +23,7 @@ from cnc_ptp.axis.faults import (
 from cnc_ptp.axis.override_filter import OverrideFilter
 from cnc_ptp.axis.ptp import SMALLEST_OVERRIDE, PtpGenerator
 from cnc_ptp.axis.target_window import TargetWindow
-from cnc_ptp.errors import Value
+from cnc_ptp.errors import NO_VALUES, Value
 from cnc_ptp.motion.limits import Limits
 from cnc_ptp.motion.setpoints import MotionState, Setpoints
 from cnc_ptp.parameters import AxisParameters
@@ -44,8 +44,8 @@ ROUNDING = 1e-9
 KEEPING_TARGET = (S.STANDSTILL, S.DISCRETE_MOTION, S.STOPPING)
 """States in which the target of the last positioning still counts for move_additive."""
 
-Report = Callable[[int, int, str], None]
-"""Takes an event: cycle, number, text."""
+Report = Callable[[int, int, str, Mapping[str, Value]], None]
+"""Takes an event: cycle, number, text, and the numbers of the text by name."""
 
 
 class Axis:
@@ -359,7 +359,7 @@ class Axis:
         self.coupling = None
         self.jobs.end(cycle, JobStatus.FAILED, error_id)
         self.take(T.DECOUPLE_AT_REST if self.powered else T.DECOUPLE_WITHOUT_POWER)
-        self._report_warning(cycle, error_id, text)
+        self._report_warning(cycle, error_id, text, NO_VALUES)
 
     def couples_actual(self) -> bool:
         """Slaves follow the actual values: of a main master without enable, or of an axis with a delayed error."""
@@ -477,7 +477,8 @@ class Axis:
         elif self.external.mode is not None or self.superposition_moves(cycle):
             now = "external setpoints move the axis now"
         what = "jog" if self.ptp.job is None or self.ptp.job.jog else "motion at a velocity"
-        self._report_warning(cycle, JOG_AT_LIMIT, f"axis {self.name}: the {what} has reached the {limit.text}; {now}")
+        text = f"axis {self.name}: the {what} has reached the {limit.text}; {now}"
+        self._report_warning(cycle, JOG_AT_LIMIT, text, {"soft_limit": limit.position})
 
     def _finish(self, transition: Transition) -> None:
         """A stop that has finished, while external setpoints come to rest, may still be given a new target."""
@@ -532,12 +533,13 @@ class Axis:
         reason: str,
         setpoint: MotionState | None = None,
         path_stop: PathStop | None = None,
+        values: Mapping[str, Value] = NO_VALUES,
     ) -> None:
         """Error reaction: own ramp from the setpoint of `cycle`, state ErrorStop; nothing waits then.
 
         The slave of a gantry pair whose group has an error follows its master to standstill (`end_with_master`).
         `setpoint` within a block, if it comes from another source than the axis' own generator. `path_stop` is the ramp
-        in step with a spindle, instead of its own.
+        in step with a spindle, instead of its own. `values`: the numbers of the reason by name.
         """
         self.error_id = error_id
         self.drop_waiting(cycle)
@@ -545,7 +547,7 @@ class Axis:
         if pair is not None:
             self._note_propagation(cycle, error_id)
             text = f"axis {self.name}: {reason}; the axis stops with its master {pair.master} (ErrorStop)"
-            self._report_error(cycle, error_id, text)
+            self._report_error(cycle, error_id, text, values)
             return
         if setpoint is not None and self.state == S.SYNCHRONIZED_MOTION:
             position, velocity, acceleration, _ = setpoint
@@ -559,7 +561,7 @@ class Axis:
         effect = self._stop_for(cycle, error_id) if path_stop is None else self._stop_in_step(cycle, path_stop)
         self.target_window.forget()
         self.take(T.FAULT)
-        self._report_error(cycle, error_id, f"axis {self.name}: {reason}; {effect} (ErrorStop)")
+        self._report_error(cycle, error_id, f"axis {self.name}: {reason}; {effect} (ErrorStop)", values)
 
     def _stop_for(self, cycle: int, error_id: int) -> str:
         """The ramp of a fault: the drive's where it leads the axis, that of an emergency stop, or the axis' own."""

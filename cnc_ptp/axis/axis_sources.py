@@ -125,7 +125,7 @@ class PathSource:
             axis.fault(cycle, PATH_NOT_ACCEPTED, "the channel moves the path while MC_Stop holds the axis (hold_stop)")
         elif abs(start - position) > PATH_TOLERANCE:
             reason = f"the path of the channel starts at {start} {axis.unit}, the axis is at {position} {axis.unit}"
-            axis.fault(cycle, PATH_NOT_ACCEPTED, reason)
+            axis.fault(cycle, PATH_NOT_ACCEPTED, reason, values={"start": start, "actual_position": position})
         else:
             axis.absorb(cycle)
             axis.path_direction = 0.0

@@ -37,6 +37,7 @@ from cnc_ptp.control.drives import Drive, make_drive
 from cnc_ptp.control.drives.sercos import idns
 from cnc_ptp.control.faults import FOLLOWING_ERROR
 from cnc_ptp.control.feedforward import CouplingLimits
+from cnc_ptp.errors import Value
 from cnc_ptp.motion.setpoints import MotionState, Setpoints
 from cnc_ptp.parameters import AxisParameters, SpindleParameters
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
@@ -80,6 +81,7 @@ class AxisUnit(Unit):
             report_error=self._report_error,
             report_warning=self._report_warning,
         )
+        self.length_unit = self._axis.unit
         self._queue = MotionQueue(self._axis, cycle_time=cycle_time, report_warning=self._report_warning)
         self._monitoring = Monitoring(self._axis, cycle_time=cycle_time, report_warning=self._report_warning)
         self._trajectory = TrajectoryWatch(self._axis, cycle_time=cycle_time, report_warning=self._report_warning)
@@ -130,11 +132,11 @@ class AxisUnit(Unit):
         )
         self._last_block: AxisBlock | None = None
 
-    def _report_error(self, cycle: int, error_id: int, text: str) -> None:
-        self.event(cycle, Severity.ERROR, error_id, text)
+    def _report_error(self, cycle: int, error_id: int, text: str, values: Mapping[str, Value]) -> None:
+        self.report(cycle, Severity.ERROR, error_id, text, values)
 
-    def _report_warning(self, cycle: int, error_id: int, text: str) -> None:
-        self.event(cycle, Severity.WARNING, error_id, text)
+    def _report_warning(self, cycle: int, error_id: int, text: str, values: Mapping[str, Value]) -> None:
+        self.report(cycle, Severity.WARNING, error_id, text, values)
 
     def _report_phase(self, cycle: int, error_id: int, text: str) -> None:
         self.event(cycle, Severity.INFO, error_id, text)
@@ -239,7 +241,8 @@ class AxisUnit(Unit):
         self._probe.watch(block, self._loop.offset)
         warning = feedforward_warning(self._loop.feedforward, block.set_velocity[-1], axis.unit)
         if warning is not None:
-            self._report_warning(first_cycle + count - 1, FEEDFORWARD_WAITS, f"axis {self.name}: {warning}")
+            text, values = warning
+            self._report_warning(first_cycle + count - 1, FEEDFORWARD_WAITS, f"axis {self.name}: {text}", values)
         block.master = axis.coupling.master if axis.coupling is not None else ""
         block.target_velocity, block.couples_actual = axis.target_velocity(), axis.couples_actual()
         self._last_block = block
@@ -327,7 +330,8 @@ class AxisUnit(Unit):
         self._trajectory.watch(cycle, setpoint, actual_position)
         closed = not axis.lead.active and (axis.powered or axis.moving(cycle))
         if closed and axis.error_id == 0 and loop.too_far(setpoint):
-            axis.fault(cycle, FOLLOWING_ERROR, loop.why_too_far(setpoint, axis.unit), setpoint)
+            reason = loop.why_too_far(setpoint, axis.unit)
+            axis.fault(cycle, FOLLOWING_ERROR, reason, setpoint, values=loop.lag_values(setpoint))
         loop.cycle(setpoint, closed, control)
         position, velocity, acceleration, jerk = setpoint
         block.set_position.append(position)

@@ -107,12 +107,13 @@ def _columns(points: Sequence[Sequence[float]]) -> tuple[np.ndarray, np.ndarray]
     if table.shape != (len(points), 2) or not np.isfinite(table).all():
         raise CncError(BAD_CAM_TABLE, "each point of a cam table needs two finite numbers, master and slave")
     if np.abs(table).max() > LARGEST_STATE:
-        raise CncError(BAD_CAM_TABLE, f"the points of a cam table must lie within ±{LARGEST_STATE:g}")
+        limit = LARGEST_STATE
+        raise CncError(BAD_CAM_TABLE, f"the points of a cam table must lie within ±{limit:g}", limit=limit)
     steps = np.flatnonzero(np.diff(table[:, 0]) < SMALLEST_STEP)
     if len(steps):
-        before, after = table[steps[0], 0], table[steps[0] + 1, 0]
-        reason = f"master position {after:g} comes after {before:g}; {ASCEND}"
-        raise CncError(BAD_CAM_TABLE, reason, position=float(after), before=float(before))
+        before, position = float(table[steps[0], 0]), float(table[steps[0] + 1, 0])
+        reason = f"master position {position:g} comes after {before:g}; {ASCEND}"
+        raise CncError(BAD_CAM_TABLE, reason, position=position, before=before)
     return table[:, 0], table[:, 1]
 
 

@@ -115,7 +115,7 @@ class MotionChecks:
             f"axis {self._parameters.name}: {command}: jerk {limits.jerk} {self._unit}/s³ is above A/T, the "
             f"acceleration over one cycle; {highest} {self._unit}/s³ is used"
         )
-        return limits._replace(jerk=highest), warning_text(JERK_RESCALED, warning)
+        return limits._replace(jerk=highest), warning_text(JERK_RESCALED, warning, jerk=limits.jerk, corrected=highest)
 
     def soft_limit(self, direction: float) -> SoftLimit:
         """The soft limit in this direction of motion (> 0: positive); infinity until the axis is referenced."""

@@ -116,8 +116,9 @@ class CompensationCommands:
                 reason = f"{name} = {value} must be greater than 0"
                 self._axis.refuse(START, BAD_COMPENSATION, reason, argument=name, value=value)
             if not SMALLEST_LIMIT <= value <= LARGEST_LIMIT:
-                reason = f"{name} = {value} must be between {SMALLEST_LIMIT:g} and {LARGEST_LIMIT:g}"
-                self._axis.refuse(START, BAD_COMPENSATION, reason, argument=name, value=value)
+                low, high = SMALLEST_LIMIT, LARGEST_LIMIT
+                reason = f"{name} = {value} must be between {low:g} and {high:g}"
+                self._axis.refuse(START, BAD_COMPENSATION, reason, argument=name, value=value, low=low, high=high)
         if difference == 0.0:
             reason = "difference = 0 must be different from 0"
             self._axis.refuse(START, BAD_COMPENSATION, reason, argument="difference", value=difference)
@@ -129,7 +130,8 @@ class CompensationCommands:
         axis = self._axis
         forwards = velocity + max(row[2] for row in table.rows)
         peak = max(forwards, max(-row[2] for row in table.rows))
-        highest, unit = axis.parameters.max_velocity, f"{axis.unit}/s"
+        highest = axis.parameters.max_velocity
+        unit = f"{axis.unit}/s"
         if peak > highest:
             reason = f"the axis would get up to {peak:g} {unit}, above the maximum {highest} {unit} (P-AXIS-00212)"
             axis.refuse(START, VELOCITY_TOO_HIGH, reason, velocity=peak, limit=highest)

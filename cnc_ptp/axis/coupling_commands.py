@@ -195,9 +195,9 @@ class CouplingCommands:
             reason = f"{name} = 0 must be different from 0"
             self._axis.refuse(command, BAD_FACTOR, reason, argument=name, value=factor)
         if not SMALLEST_FACTOR <= abs(factor) <= LARGEST_FACTOR:
-            limits = f"between {SMALLEST_FACTOR:g} and {LARGEST_FACTOR:g} or the negative of it"
-            reason = f"{name} = {factor} must be {limits}"
-            self._axis.refuse(command, BAD_FACTOR, reason, argument=name, value=factor)
+            low, high = SMALLEST_FACTOR, LARGEST_FACTOR
+            reason = f"{name} = {factor} must be between {low:g} and {high:g} or the negative of it"
+            self._axis.refuse(command, BAD_FACTOR, reason, argument=name, value=factor, low=low, high=high)
 
     def _check_positive(self, command: str, **values: float) -> None:
         for name, value in values.items():
@@ -249,11 +249,11 @@ class CouplingCommands:
         bound = abs(factor) * max(master.acceleration, master.deceleration)
         if bound <= coupling.acc_bound:
             return None
-        return warning_text(
-            ACC_BOUND_UNSTABLE,
+        text = (
             f"axis {axis.name}: set_cyclic_factor: AccBound {coupling.acc_bound:g} is below |factor|·max(A+, A-) = "
-            f"{bound:g} {axis.unit}/s² of the master {coupling.master}; the slave may lag behind",
+            f"{bound:g} {axis.unit}/s² of the master {coupling.master}; the slave may lag behind"
         )
+        return warning_text(ACC_BOUND_UNSTABLE, text, acceleration=bound, limit=coupling.acc_bound)
 
     def _coupled(self, command: str) -> Coupling:
         axis = self._axis

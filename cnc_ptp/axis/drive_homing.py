@@ -8,8 +8,10 @@ A PLC that writes S-0-0148 itself does the same step by step: the axis only foll
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from cnc_ptp.axis import transitions as T
-from cnc_ptp.axis.axis import Axis, Report
+from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.faults import DRIVE_ABORTED, DRIVE_SILENT, NO_REFERENCE_FLAG
 from cnc_ptp.control.control_loop import ControlLoop
 from cnc_ptp.control.drives.sercos import idns
@@ -25,7 +27,9 @@ PLC_ABORTED, PLC_NO_REFERENCE = "16#FFFFFFFE", "16#FFFFFFFD"
 class DriveHoming:
     """The axis' side of S-0-0148, cycle by cycle."""
 
-    def __init__(self, axis: Axis, loop: ControlLoop, *, cycle_time: float, report: Report) -> None:
+    def __init__(
+        self, axis: Axis, loop: ControlLoop, *, cycle_time: float, report: Callable[[int, int, str], None]
+    ) -> None:
         """`cycle_time` in s; `report` takes the phases of the drive as events."""
         self._axis, self._loop = axis, loop
         self._report = report
@@ -132,5 +136,6 @@ class DriveHoming:
             reason = f"homing: the drive has aborted {idns.HOMING} with an error: {homing.diagnosis} ({PLC_ABORTED})"
             axis.fault(cycle, DRIVE_ABORTED, reason)
         elif self._waited > self._longest:
-            limit = f"{axis.parameters.homing.timeout:g} s (P-MACH-00062)"
-            axis.fault(cycle, DRIVE_SILENT, f"homing: the drive has not acknowledged {idns.HOMING} within {limit}")
+            patience = axis.parameters.homing.timeout
+            reason = f"homing: the drive has not acknowledged {idns.HOMING} within {patience:g} s (P-MACH-00062)"
+            axis.fault(cycle, DRIVE_SILENT, reason, values={"patience": patience})

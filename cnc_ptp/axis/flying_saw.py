@@ -91,12 +91,12 @@ class FlyingSaw(Coupling):
             where = f"{distance:g} {unit} away" if distance >= 0.0 else f"{-distance:g} {unit} behind the axis"
             needed = abs(ramp.end[0] - position)
             reason = f"the run-up takes {needed:g} {unit}, the synchronous position is {where}"
-            raise CncError(SAW_TOO_LATE, reason, needed=needed, distance=distance)
+            raise CncError(SAW_TOO_LATE, reason, run_up=needed, distance=distance)
         if self._wait < -ROUNDING - rounding(self._start, self._master_position) / abs(self._speed):
             when = f"is there in {meeting:g} s" if meeting >= 0.0 else f"was there {-meeting:g} s ago"
             needed = ramp.duration + cruise
             reason = f"the run-up takes {needed:g} s, the master {when}"
-            raise CncError(SAW_TOO_LATE, reason, needed=needed, time=meeting)
+            raise CncError(SAW_TOO_LATE, reason, duration=needed, time=meeting)
         self._wait = max(0.0, self._wait)
         rows = [(self._wait + t, p, v, a, j) for t, p, v, a, j in ramp.rows]
         self._table = Profile([(0.0, position, 0.0, 0.0, 0.0), *rows])

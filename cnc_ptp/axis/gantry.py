@@ -55,11 +55,13 @@ class GantryPair:
             self._distance = distance
         difference = abs(distance - self._distance)
         if difference > coupling.difference_limit:
+            limit = coupling.difference_limit
             reason = (
                 f"the actual positions of {axis.name} and its gantry master {coupling.master} differ by "
-                f"{difference:g} {axis.unit}, more than {coupling.difference_limit:g} {axis.unit}"
+                f"{difference:g} {axis.unit}, more than {limit:g} {axis.unit}"
             )
-            axis.fault(cycle, GANTRY_DIFFERENCE, reason, setpoint)
+            values = {"difference": difference, "limit": limit}
+            axis.fault(cycle, GANTRY_DIFFERENCE, reason, setpoint, values=values)
 
     def ends(self, first_cycle: int, position: float, master: AxisBlock) -> bool:
         """The slave is in error: true when it ends, with its master, or alone if the master does not stop."""

@@ -92,7 +92,7 @@ class Homing:
             axis.ptp.stop(cycle, axis.own_limits)
             return setpoint
         if axis.ptp.arrived(cycle):
-            axis.fault(cycle, HOMING_SIGNAL_MISSING, self._missing())
+            axis.fault(cycle, HOMING_SIGNAL_MISSING, self._missing(), values={"range": self._parameters.range})
         return setpoint
 
     def _go_on(self, cycle: int) -> None:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import copysign
 
 from cnc_ptp.axis.axis import ROUNDING, Axis, Report
 from cnc_ptp.axis.faults import FEED_WITHHELD, SETPOINT_TOO_FAR, SETPOINTS_STOPPED, SUM_TOO_FAST
 from cnc_ptp.control.faults import TARGET_MISSED
+from cnc_ptp.errors import NO_VALUES, Value
 from cnc_ptp.motion.setpoints import MotionState, Setpoints
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 
@@ -93,7 +95,9 @@ class Monitoring:
         driven = axis.carried is not None or axis.external.mode is not None
         return not (driven and axis.ptp.withholds(added))
 
-    def _fault_before(self, cycle: int, error_id: int, reason: str, setpoint: MotionState) -> MotionState:
+    def _fault_before(
+        self, cycle: int, error_id: int, reason: str, setpoint: MotionState, values: Mapping[str, Value] = NO_VALUES
+    ) -> MotionState:
         """A fault that excludes `setpoint`: the ramp starts in the cycle before. Returns the setpoint to be used.
 
         If nothing was superimposed there, it starts at `setpoint`. The slave of a gantry pair continues with its
@@ -101,11 +105,11 @@ class Monitoring:
         """
         axis = self._axis
         if axis.pair_in(error_id) is not None:
-            axis.fault(cycle, error_id, reason)
+            axis.fault(cycle, error_id, reason, values=values)
             return setpoint
         before = self._before if self._before is not None and self._before[0] == cycle - 1 else (cycle, setpoint)
         axis.brake(*before)
-        axis.fault(cycle, error_id, reason)
+        axis.fault(cycle, error_id, reason, values=values)
         return axis.ptp.state(cycle)
 
     def _watch_superposition(self, cycle: int, setpoint: MotionState) -> MotionState:
@@ -118,14 +122,17 @@ class Monitoring:
                 f"external setpoint {packet.position} {unit} is {abs(distance):g} {unit} away, more than the axis can "
                 f"move in a cycle at {most} {unit}/s (P-AXIS-00212)"
             )
-            axis.fault(cycle, SETPOINT_TOO_FAR, reason, setpoint)
+            values = {"position": packet.position, "distance": abs(distance), "velocity_limit": most}
+            axis.fault(cycle, SETPOINT_TOO_FAR, reason, setpoint, values=values)
         elif axis.external.silence(cycle) > self._longest_silence:
-            timeout = f"{axis.parameters.external_timeout * 1000.0:g} ms"
-            axis.fault(cycle, SETPOINTS_STOPPED, f"no external setpoint for {timeout} while the axis moves", setpoint)
+            timeout = axis.parameters.external_timeout * 1000.0
+            reason = f"no external setpoint for {timeout:g} ms while the axis moves"
+            axis.fault(cycle, SETPOINTS_STOPPED, reason, setpoint, values={"timeout": timeout})
         elif abs(setpoint[1]) > most * (1.0 + ROUNDING):
-            total = f"the superimposed motions would add up to {abs(setpoint[1]):g} {unit}/s"
+            velocity = abs(setpoint[1])
+            total = f"the superimposed motions would add up to {velocity:g} {unit}/s"
             reason = f"{total}, above the maximum {most} {unit}/s (P-AXIS-00212)"
-            return self._fault_before(cycle, SUM_TOO_FAST, reason, setpoint)
+            return self._fault_before(cycle, SUM_TOO_FAST, reason, setpoint, {"velocity": velocity, "limit": most})
         else:
             self._watch_soft_limits(cycle, setpoint)
         self._before = cycle, setpoint
@@ -137,7 +144,7 @@ class Monitoring:
         outside = position > limit.position if velocity > 0.0 else position < limit.position
         if outside and velocity != 0.0:
             reason = f"set position {position} {axis.unit} is beyond the {limit.text}"
-            axis.fault(cycle, limit.number, reason, setpoint)
+            axis.fault(cycle, limit.number, reason, setpoint, values={"position": position, "limit": limit.position})
 
     def watch_target(self, cycle: int, setpoint: MotionState, actual_position: float) -> None:
         """Warns once of an axis that has not come into its target window in time."""
@@ -149,10 +156,9 @@ class Monitoring:
         if not window.overdue(cycle, setpoint[0], actual_position):
             return
         distance = abs(window.error(setpoint[0], actual_position))
-        self._report_warning(
-            cycle,
-            TARGET_MISSED,
-            f"axis {axis.name}: {axis.parameters.target_time:g} s after its end the motion is {distance:g} {axis.unit} "
-            f"away from its target, more than the position window {axis.parameters.position_window:g} {axis.unit} "
-            "(P-AXIS-00236)",
+        time, limit = axis.parameters.target_time, axis.parameters.position_window
+        text = (
+            f"axis {axis.name}: {time:g} s after its end the motion is {distance:g} {axis.unit} away from its target, "
+            f"more than the position window {limit:g} {axis.unit} (P-AXIS-00236)"
         )
+        self._report_warning(cycle, TARGET_MISSED, text, {"distance": distance, "limit": limit, "time": time})

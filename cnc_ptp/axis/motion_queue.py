@@ -93,7 +93,7 @@ class MotionQueue:
             axis.last_target = goal
             reason = f"{distance:g} {axis.unit} is below one encoder increment ({increment} {axis.unit})"
             text = f"axis {axis.name}: {motion.command} over {reason}; the axis does not move"
-            return warning_text(BELOW_INCREMENT, text)
+            return warning_text(BELOW_INCREMENT, text, distance=distance, limit=increment)
         axis.absorb(cycle)
         self.begin(cycle, motion, goal)
         return motion.warning
@@ -244,4 +244,4 @@ class MotionQueue:
             axis.ptp.stop(cycle, axis.own_limits, locks=False)
             axis.has_been_stopped = True
         axis.jobs.drop(cycle, number, error.number)
-        self._report_warning(cycle, error.number, error.message)
+        self._report_warning(cycle, error.number, error.message, error.values)

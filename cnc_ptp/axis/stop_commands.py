@@ -8,7 +8,7 @@ from cnc_ptp.axis import transitions as T
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.faults import EMERGENCY_CORRECTED, IN_BRAKE_PHASE, NOT_READY, SLAVE_LOCKED
 from cnc_ptp.axis.transitions import STOPPABLE
-from cnc_ptp.errors import warning_text
+from cnc_ptp.errors import joined_warnings, warning_text
 from cnc_ptp.motion import Limits
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.notes import without_effect
@@ -91,7 +91,7 @@ class StopCommands:
         axis.absorb(cycle)
         axis.ptp.stop(cycle, ramp, at_least=True)
         self._stopped(locks=True)
-        return "; ".join(filter(None, (warning, cancelled))) or None
+        return joined_warnings(warning, cancelled)
 
     def _stop_drive(self, cycle: int, deceleration: object, jerk: object) -> str | None:
         """A drive that homes the axis has its own ramp."""
@@ -131,7 +131,7 @@ class StopCommands:
         corrected = "; ".join(filter(None, (weak, strong, slow)))
         text = f"axis {axis.name}: {command}: {corrected}"
         warning = warning_text(EMERGENCY_CORRECTED, text) if corrected else None
-        return ramp, "; ".join(filter(None, (warning, rescaled))) or None
+        return ramp, joined_warnings(warning, rescaled)
 
     def _at_least(self, least: float, name: str, given: object, seconds: str) -> tuple[float, str]:
         """The value given, or that of the start if it is invalid or less, and the text for that."""

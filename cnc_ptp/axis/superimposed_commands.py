@@ -52,9 +52,10 @@ class SuperimposedCommands:
         self._check_release(cycle, distance, limits)
         small = abs(distance) < axis.parameters.encoder_increment or distance == 0.0
         if small and not axis.added.moving(cycle):
-            increment = f"one encoder increment ({axis.parameters.encoder_increment} {axis.unit})"
-            text = f"axis {axis.name}: {MOVE} over {abs(distance):g} {axis.unit} is below {increment}; nothing is added"
-            return warning_text(BELOW_INCREMENT, text)
+            size, limit = abs(distance), axis.parameters.encoder_increment
+            increment = f"one encoder increment ({limit} {axis.unit})"
+            text = f"axis {axis.name}: {MOVE} over {size:g} {axis.unit} is below {increment}; nothing is added"
+            return warning_text(BELOW_INCREMENT, text, distance=size, limit=limit)
         growth = axis.added.growth(cycle, distance)
         self._queue.check_addition(cycle, growth)
         self._make_room(cycle, growth)

@@ -125,7 +125,7 @@ class TrajectoryChecks:
                 f"without velocities the velocity steps by {abs(step):g} {unit} at {time:g} s, more than {most:g} "
                 f"{unit} in a cycle (P-AXIS-00008); give velocities"
             )
-            self._axis.refuse(BEGIN, ACCELERATION_TOO_HIGH, reason, value=abs(step), limit=most, time=time)
+            self._axis.refuse(BEGIN, ACCELERATION_TOO_HIGH, reason, velocity=abs(step), limit=most, time=time)
 
     def _velocity(self, extremum: Extremum) -> None:
         parameters, unit = self._axis.parameters, f"{self._axis.unit}/s"
@@ -142,7 +142,8 @@ class TrajectoryChecks:
                 self._axis.refuse(BEGIN, number, reason, velocity=extremum.value, limit=most, time=extremum.time)
 
     def _acceleration(self, extremum: Extremum) -> None:
-        most, unit = self._axis.parameters.max_acceleration, f"{self._axis.unit}/s²"
+        most = self._axis.parameters.max_acceleration
+        unit = f"{self._axis.unit}/s²"
         if abs(extremum.value) > most * (1.0 + ROUNDING):
             above = f"is above the maximum {most} {unit} (P-AXIS-00008)"
             reason = f"acceleration {extremum.value:g} {unit} at {extremum.time:g} s {above}"

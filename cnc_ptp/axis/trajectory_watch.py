@@ -48,7 +48,9 @@ class TrajectoryWatch:
                 f"{position:g} {unit}, actual position {actual_position:g} {unit}), more than the path tolerance "
                 f"{self._path_tolerance:g} {unit}"
             )
-            axis.fault(cycle, PATH_DEVIATION, reason)
+            values = {"deviation": deviation, "limit": self._path_tolerance, "expected": position}
+            values |= {"actual_position": actual_position, "time": time}
+            axis.fault(cycle, PATH_DEVIATION, reason, values=values)
 
     def _watch_goal(self, cycle: int, position: float, actual_position: float, deviation: float) -> None:
         axis, unit = self._axis, self._axis.unit
@@ -64,4 +66,6 @@ class TrajectoryWatch:
                 f"position {actual_position:g} {unit}) {self._goal_time:g} s after its end, more than the goal "
                 f"tolerance {self._goal_tolerance:g} {unit}; the axis is at a standstill"
             )
-            self._report_warning(cycle, GOAL_MISSED, text)
+            values = {"deviation": deviation, "limit": self._goal_tolerance, "goal": position}
+            values |= {"actual_position": actual_position, "time": self._goal_time}
+            self._report_warning(cycle, GOAL_MISSED, text, values)

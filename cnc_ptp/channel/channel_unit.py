@@ -29,7 +29,7 @@ from cnc_ptp.channel.thread_errors import ThreadErrors, add_thread
 from cnc_ptp.channel.time_estimate import TimeEstimate
 from cnc_ptp.channel.timers import Timers
 from cnc_ptp.channel.waits import Outgoing
-from cnc_ptp.errors import CncError, Value
+from cnc_ptp.errors import NO_VALUES, CncError, Value
 from cnc_ptp.nc.expressions.values import Variable
 from cnc_ptp.nc.faults import ProgramError, line_of_program
 from cnc_ptp.nc.flow.sections import Program
@@ -369,7 +369,7 @@ class ChannelUnit(Unit):
         self._read_feedback(first_cycle, inputs)
         errors = self._thread_errors.take(first_cycle, inputs)
         if unanswered := self._watch.unanswered(first_cycle, self._handshake_cycles, self._handshake_timeout):
-            self._fault(first_cycle, *unanswered)
+            self._fault(first_cycle, unanswered.number, unanswered.text, unanswered.values)
         outgoing = self._sequence.take_outgoing(first_cycle)
         spindle = self._path_spindle.node
         on_path = self._unfinished or self._sequence.phase not in OFF_PATH
@@ -521,8 +521,8 @@ class ChannelUnit(Unit):
 
     def _warn(self, cycle: int) -> None:
         line = self._sequence.source.line
-        for severity, number, text in self._motion.take_notes():
-            self.event(cycle, severity, number, f"channel {self.name}: {text} (line {line})", line)
+        for severity, number, text, named in self._motion.take_notes():
+            self.report(cycle, severity, number, f"channel {self.name}: {text} (line {line})", named, line)
         messages, self._sequence.messages = self._sequence.messages, []
         for number, text, line, values in messages:
             self.event(cycle, Severity.INFO, number, text, line, values)
@@ -641,7 +641,7 @@ class ChannelUnit(Unit):
         line, before = self._sequence.source.line, self._axes.withheld
         for node in self._axes.read_releases(inputs, can_be_held=can_be_held):
             reason = f"the path stops in line {line} and waits for the feed release of axis {node}"
-            self._warn_of(cycle, (FEED_WITHHELD, reason))
+            self._warn_of(cycle, Finding(FEED_WITHHELD, reason))
         if self._axes.withheld != before:
             self._apply_override()
 
@@ -653,8 +653,8 @@ class ChannelUnit(Unit):
         for reason in self._axes.read(inputs, just_started=self._just_started):
             self._fault(first_cycle, AXIS_NOT_READY, reason)
         self._just_started = False
-        for number, reason in self._watch.faults(inputs):
-            self._fault(first_cycle, number, reason)
+        for finding in self._watch.faults(inputs):
+            self._fault(first_cycle, finding.number, finding.text, finding.values)
         self._read(self._sequence.read, first_cycle)
         self._read(self._read_path_spindle, first_cycle)
         self._motion.follow_spindle()
@@ -688,16 +688,16 @@ class ChannelUnit(Unit):
         return self._sequence.stream.fill, self._motion.path_ahead
 
     def _warn_of(self, cycle: int, finding: Finding) -> None:
-        number, text = finding
-        self.event(cycle, Severity.WARNING, number, f"channel {self.name}: {text}", self._sequence.source.line)
+        text, line = f"channel {self.name}: {finding.text}", self._sequence.source.line
+        self.report(cycle, Severity.WARNING, finding.number, text, finding.values, line)
 
     def _fault_in_line(self, cycle: int, error: CncError) -> None:
         """Error of the active block; what the program has told before comes before it."""
         self._warn(cycle)
         where = line_of_program(self._sequence.source, self._sequence.calls)
-        self._fault(cycle, error.number, f"{error.message} in {where}")
+        self._fault(cycle, error.number, f"{error.message} in {where}", error.values)
 
-    def _fault(self, cycle: int, error_id: int, reason: str) -> None:
+    def _fault(self, cycle: int, error_id: int, reason: str, values: Mapping[str, Value] = NO_VALUES) -> None:
         """Error reaction: the path ramps down, the program is aborted, its spindles stop; state ERROR until reset."""
         if self._error_id:
             return
@@ -707,7 +707,7 @@ class ChannelUnit(Unit):
             effect = "its spindles stop" if self._sequence.spindles_move else "nothing moves"
         line = 0 if idle else self._sequence.source.line
         self._error_id = error_id
-        self.event(cycle, Severity.ERROR, error_id, f"channel {self.name}: {reason}; {effect}", line)
+        self.report(cycle, Severity.ERROR, error_id, f"channel {self.name}: {reason}; {effect}", values, line)
         self._sequence.ramp_down()
 
     def _fail_before(self, cycle: int, error: ProgramError) -> None:
@@ -716,7 +716,7 @@ class ChannelUnit(Unit):
         where = f"the path stands behind line {line} '{text}'" if line else "nothing has moved"
         self._error_id = error.number
         reason = f"{error.full_message}; {where} and the program is aborted"
-        self.event(cycle, Severity.ERROR, error.number, f"channel {self.name}: {reason}", error.line)
+        self.report(cycle, Severity.ERROR, error.number, f"channel {self.name}: {reason}", error.values, error.line)
         self._sequence.ramp_down()
 
     def _require_idle(self, command: str) -> None:

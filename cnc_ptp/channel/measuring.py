@@ -76,9 +76,10 @@ class Measuring:
             axis = self._axes[place]
             block = feedback.get(axis.node)
             if isinstance(block, AxisBlock) and block.probe_on:
-                at = f"at {number(block.actual_position[-1])} {axis.unit}"
+                position = block.actual_position[-1]
+                at = f"at {number(position)} {axis.unit}"
                 reason = f"the probe of axis {axis.name} is on already, {at}, before the measuring run"
-                raise CncError(PROBE_ON, reason, axis=axis.node)
+                raise CncError(PROBE_ON, reason, axis=axis.node, actual_position=position)
         self._measures = motion.measures
         self._last = self._stood_at = self._ends(feedback)
         self._settling = self._window = 0

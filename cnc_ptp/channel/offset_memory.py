@@ -52,7 +52,8 @@ class OffsetMemory:
                 unit = "deg" if axis in self._channel.rotary else "mm"
                 limits = f"-{LARGEST_POSITION} ... {LARGEST_POSITION} {unit}"
                 reason = f"axis {axis}: {value:g} {unit} is not within {limits}"
-                raise self._refusal(command, OFFSET_RANGE, reason, value=value, limit=LARGEST_POSITION)
+                named = {"angle" if unit == "deg" else "position": value, "limit": LARGEST_POSITION}
+                raise self._refusal(command, OFFSET_RANGE, reason, **named)
             table[place] = value * self._channel.turning.offset_factor(place)
         self.changes = self.changes._replace(values={**self.changes.values, index: tuple(table)})
 

@@ -14,7 +14,7 @@ from cnc_ptp.channel.program_start import ProgramStart
 from cnc_ptp.channel.program_times import BlockTimes
 from cnc_ptp.channel.thread_reading import ThreadReading
 from cnc_ptp.control.commands import NO_FRICTION_COMPENSATION
-from cnc_ptp.errors import CncError
+from cnc_ptp.errors import CncError, Value
 from cnc_ptp.nc.awaited import awaits_path
 from cnc_ptp.nc.canonical import (
     BUSY,
@@ -452,10 +452,10 @@ class ProgramCheck:
             if position > axis.soft_limit_positive:
                 limit = f"positive soft limit {axis.soft_limit_positive:g} {unit} (P-AXIS-00178)"
                 text = f"axis {name}: {position:g} {unit} lies beyond the {limit}"
-                raise ProgramError(SOFT_LIMIT_POSITIVE, text, source, 1)
+                raise ProgramError(SOFT_LIMIT_POSITIVE, text, source, 1, **beyond(axis, position))
             limit = f"negative soft limit {axis.soft_limit_negative:g} {unit} (P-AXIS-00177)"
             text = f"axis {name}: {position:g} {unit} lies beyond the {limit}"
-            raise ProgramError(SOFT_LIMIT_NEGATIVE, text, source, 1)
+            raise ProgramError(SOFT_LIMIT_NEGATIVE, text, source, 1, **beyond(axis, position))
 
     def _function(self, function: Function, source: Source) -> None:
         if isinstance(function, (SpindleFunction, SpindleCommand)):
@@ -506,6 +506,12 @@ class ProgramCheck:
             raise ProgramError(SENSORLESS, f"{why} positioned", source, 1)
         if isinstance(function, SpindleCommand) and function.command == "home":
             raise ProgramError(NO_POSITION_VALUE, f"{why} homed", source, 1)
+
+
+def beyond(axis: AxisParameters, position: float) -> dict[str, Value]:
+    """The numbers of a position beyond a soft limit, by name."""
+    limit = axis.soft_limit_positive if position > axis.soft_limit_positive else axis.soft_limit_negative
+    return {"angle" if axis.rotary else "position": position, "limit": limit}
 
 
 def turning_axes(channel: ChannelParameters, axes: Sequence[AxisParameters]) -> TurningAxes:

@@ -6,10 +6,12 @@ Each finding is the number and the text of an event, without the name of the cha
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 from cnc_ptp.channel.feed_per_turn import FeedPerTurn
 from cnc_ptp.channel.path_axes import PathAxes
 from cnc_ptp.channel.program_sequence import Phase, ProgramSequence
+from cnc_ptp.errors import NO_VALUES, Value
 from cnc_ptp.parameters import ChannelParameters
 from cnc_ptp.path.path_motion import PathMotion
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
@@ -25,8 +27,14 @@ SPINDLE_STANDS = 22140
 
 ENOUGH = 0.5
 """Fill of the buffer of blocks at which the interpreter has kept up again."""
-Finding = tuple[int, str]
-"""Number and text of an event."""
+
+
+class Finding(NamedTuple):
+    """Number and text of an event, and the numbers of the text by name."""
+
+    number: int
+    text: str
+    values: Mapping[str, Value] = NO_VALUES
 
 
 class Supervision:
@@ -65,12 +73,12 @@ class Supervision:
         if block.error_id[-1]:
             if isinstance(block, AxisBlock):
                 self._motion.axis_failed(self._axes.nodes.index(node))
-            return MEMBER_IN_ERROR, f"{node} is in error P-ERR-{block.error_id[-1]}"
+            return Finding(MEMBER_IN_ERROR, f"{node} is in error P-ERR-{block.error_id[-1]}")
         if isinstance(block, SpindleBlock):
             return self._refusal(node, block)
         if self._axes.on_path and block.state[-1] != AxisStateCode.SYNCHRONIZED_MOTION:
             state = state_name(AxisStateCode(block.state[-1]))
-            return AXIS_NOT_FOLLOWING, f"{node} does not follow the path, it is in {state}"
+            return Finding(AXIS_NOT_FOLLOWING, f"{node} does not follow the path, it is in {state}")
         return None
 
     def _refusal(self, node: str, block: CycleBlock) -> Finding | None:
@@ -80,7 +88,7 @@ class Supervision:
         refusal = next((refusal for refusal in block.refused if refusal.source == self._parameters.name), None)
         if refusal is None:
             return None
-        return SPINDLE_REFUSED, f"{node} has refused a command, P-ERR-{refusal.number} {refusal.text}"
+        return Finding(SPINDLE_REFUSED, f"{node} has refused a command, P-ERR-{refusal.number} {refusal.text}")
 
     def unanswered(self, cycle: int, limit: int, seconds: float) -> Finding | None:
         """The PLC must acknowledge within P-MACH-00060: `limit` cycles, `seconds`; 0 is without limit."""
@@ -90,7 +98,7 @@ class Supervision:
         function = f"{request.kind}{request.number:02d}" if request.kind == "M" else request.kind
         what = f"{function}{f' of spindle {request.spindle}' if request.spindle else ''} in line {request.line}"
         waited = f"request {request.id} ({what}) within {seconds:g} s (P-MACH-00060)"
-        return NOT_ACKNOWLEDGED, f"the PLC has not acknowledged {waited}"
+        return Finding(NOT_ACKNOWLEDGED, f"the PLC has not acknowledged {waited}", {"patience": seconds})
 
     # warnings
 
@@ -101,13 +109,13 @@ class Supervision:
         if override_percent == 0.0 and not feed_hold and self._stands():
             held.append("a path override above 0")
         found = [
-            (HELD_BY_OVERRIDE, f"the program waits in line {line} for {what}")
+            Finding(HELD_BY_OVERRIDE, f"the program waits in line {line} for {what}")
             for what in dict.fromkeys(held)
             if what not in self._held
         ]
         self._held = held
         if node := self._feed_per_turn.awaited(self._motion):
-            found.append((SPINDLE_STANDS, f"the path waits in line {line} for spindle {node} to turn (G95)"))
+            found.append(Finding(SPINDLE_STANDS, f"the path waits in line {line} for spindle {node} to turn (G95)"))
         return found
 
     def _stands(self) -> bool:
@@ -129,5 +137,7 @@ class Supervision:
         self.runs_out = True
         line, limit = sequence.source.line, f"P-CHAN-90006 gives {self._parameters.blocks_per_cycle} in a cycle"
         if sequence.starts_late:
-            return INTERPRETER_SLOW, f"the path stands before line {line}: the next block is still computed, {limit}"
-        return INTERPRETER_SLOW, f"the path is slower in line {line}: blocks for {known:.3g} mm are known, {limit}"
+            text = f"the path stands before line {line}: the next block is still computed, {limit}"
+            return Finding(INTERPRETER_SLOW, text)
+        text = f"the path is slower in line {line}: blocks for {known:.3g} mm are known, {limit}"
+        return Finding(INTERPRETER_SLOW, text, {"known": known})

@@ -90,4 +90,4 @@ class ThreadReading:
             if end < low or end > high:
                 way = f"axis {retract.name} could not retract by {retract.way:g} mm from the thread"
                 reason = f"{way}: {end:g} mm lies beyond the soft limit {limit:g} mm"
-                raise CncError(RETRACT_BEYOND_LIMIT, reason, end=end, limit=limit)
+                raise CncError(RETRACT_BEYOND_LIMIT, reason, end=end, limit=limit, retract=retract.way)

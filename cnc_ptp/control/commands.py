@@ -16,15 +16,19 @@ NO_FRICTION_COMPENSATION = 70495
 FULL_WEIGHT = 100.0
 
 
-def feedforward_warning(feedforward: Feedforward, velocity: float, unit: str) -> str | None:
-    """The warning when feedforward waits at a constant set `velocity` (mm/s, deg/s) for missing velocity reserve."""
+def feedforward_warning(feedforward: Feedforward, velocity: float, unit: str) -> tuple[str, dict[str, Value]] | None:
+    """The warning when feedforward waits at a constant set `velocity` (mm/s, deg/s) for missing velocity reserve.
+
+    Its text, and the numbers of it by name.
+    """
     limit = feedforward.take_wait()
     if limit is None:
         return None
-    return (
+    text = (
         f"feedforward waits: at {abs(velocity):g} {unit}/s there is no room up to {limit:g} {unit}/s (P-AXIS-00212) to "
         f"make up the following error; {feedforward.percent:g} % is active, the rest follows when the motion is slower"
     )
+    return text, {"velocity": abs(velocity), "limit": limit, "percent": feedforward.percent}
 
 
 class FeedforwardLoop(Protocol):
@@ -71,7 +75,10 @@ class FeedforwardCommands:
             number = WEIGHT_LIMITED
         if enabled and self._feedforward_loop.feedforward.mode == 0:
             warnings.append("feedforward without effect, P-AXIS-00223 (vorsteuer.vorsteuerung) is NONE")
-        return warning_text(number, f"{self._subject}: {'; '.join(warnings)}") if warnings else None
+        text = f"{self._subject}: {'; '.join(warnings)}"
+        if number and weight_percent is not None:
+            return warning_text(number, text, weight_percent=weight_percent, limit=FULL_WEIGHT)
+        return warning_text(number, text) if warnings else None
 
     def reselect(self) -> None:
         """What is selected holds for another feedforward of the loop, too."""

@@ -19,6 +19,7 @@ from cnc_ptp.control.friction_compensation import FrictionCompensation
 from cnc_ptp.control.history import SetpointHistory
 from cnc_ptp.control.modulo_compensation import ModuloCompensation
 from cnc_ptp.control.velocity_controller import VelocityController
+from cnc_ptp.errors import Value
 from cnc_ptp.motion.setpoints import MotionState, Setpoints
 from cnc_ptp.parameters.view.control_view import ControlParameters
 
@@ -211,6 +212,11 @@ class ControlLoop:
         following_error, velocity = self.monitored(setpoint)
         limit = f"{round(self.monitor.limit(velocity), 4)} {unit} ({self.monitor.source(velocity)})"
         return f"following error {following_error:.4f} {unit} exceeds {limit}"
+
+    def lag_values(self, setpoint: MotionState) -> dict[str, Value]:
+        """The numbers of `why_too_far`, mm or deg."""
+        following_error, velocity = self.monitored(setpoint)
+        return {"following_error": following_error, "limit": self.monitor.limit(velocity)}
 
     def lag_share(
         self, positions: Sequence[float], velocities: Sequence[float], actual_position: float, *, unit: float = 1.0

@@ -47,7 +47,7 @@ class UnitRunner:
             cycle, unit.name, command.command, command.arguments_json, False, error.number, text, values=error.values
         )
         unit.records.append(record)
-        unit.event(cycle, Severity.WARNING, error.number, text)
+        unit.report(cycle, Severity.WARNING, error.number, text, error.values)
         return record
 
     def run(self, tick: CycleTick, inputs: Mapping[str, CycleBlock]) -> CycleBlock:

@@ -14,6 +14,7 @@ from cnc_ptp.plc.program.plc_program import PlcFile
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import EventValue, Severity
 from cnc_ptp.protocol.commands import sources_of
+from cnc_ptp.protocol.event_values import role_of
 from cnc_ptp.protocol.unit import PLC, Unit
 from cnc_ptp.spindle.spindle_unit import SpindleUnit
 
@@ -94,7 +95,7 @@ def build_unit(
     if plc_file is not None:
         plc.take_program(plc_file, machine.sets)
     for notice in machine.warnings:
-        values = [EventValue(*value) for value in notice.values]
+        values = [EventValue(*value, role_of(value[0])) for value in notice.values]
         plc.event(0, Severity.WARNING, notice.error_id, str(notice), values=values)
     return plc
 

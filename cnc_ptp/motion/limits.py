@@ -64,6 +64,8 @@ def check_limit(name: str, value: float) -> None:
             "the motion is refused",
             name=name,
             value=value,
+            low=SMALLEST_LIMIT,
+            high=LARGEST_LIMIT,
         )
 
 
@@ -82,4 +84,5 @@ def check_state(**values: float) -> None:
                 "the motion is refused",
                 name=name,
                 value=value,
+                limit=LARGEST_STATE,
             )

@@ -8,6 +8,7 @@ from builtin_interfaces.msg import Time
 
 from cnc_ptp import msg
 from cnc_ptp.protocol.blocks import ChannelOffsets, CommandRecord, Event, EventValue, HandshakeRequest, read_values
+from cnc_ptp.protocol.event_values import ROLES, read_event_values
 
 
 def record_to_message(record: CommandRecord, stamp: Time) -> msg.CommandRecord:
@@ -15,7 +16,6 @@ def record_to_message(record: CommandRecord, stamp: Time) -> msg.CommandRecord:
 
 
 def event_to_message(event: Event, stamp: Time) -> msg.Event:
-    values = [msg.EventValue(name=name, value=value, unit=unit) for name, value, unit in event.values]
     message = msg.Event(
         cycle=event.cycle,
         source=event.source,
@@ -23,10 +23,15 @@ def event_to_message(event: Event, stamp: Time) -> msg.Event:
         error_id=event.error_id,
         text=event.text,
         line=event.line,
-        values=values,
+        values=[_value_to_message(value) for value in event.values],
+        **{role: _value_to_message(getattr(event, role)) for role in ROLES},
     )
     message.header.stamp = stamp
     return message
+
+
+def _value_to_message(value: EventValue) -> msg.EventValue:
+    return msg.EventValue(name=value.name, value=value.value, unit=value.unit)
 
 
 def message_to_record(message: msg.CommandRecord) -> CommandRecord:
@@ -36,7 +41,7 @@ def message_to_record(message: msg.CommandRecord) -> CommandRecord:
 
 
 def message_to_event(message: msg.Event) -> Event:
-    values = [EventValue(value.name, value.value, value.unit) for value in message.values]
+    values = read_event_values(message)
     return Event(message.cycle, message.source, message.severity, message.error_id, message.text, message.line, values)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from cnc_ptp.errors import Value
 from cnc_ptp.path.interpolator import PathInterpolator
 from cnc_ptp.path.shape import AxisState, AxisStates
 from cnc_ptp.path.thread_place import ThreadPlace
@@ -11,7 +12,7 @@ from cnc_ptp.protocol.blocks import CycleBlock
 
 PathPoint = tuple[AxisStates, float, float]
 """One cycle on the path: the state of each axis, path velocity (mm/s), distance to the end of the block (mm)."""
-Note = tuple[int, int, str]
+Note = tuple[int, int, str, Mapping[str, Value]]
 """Severity, number and text of an event."""
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, ClassVar
 
 from cnc_ptp.axis.external_commands import SETPOINTS
-from cnc_ptp.errors import CncError
+from cnc_ptp.errors import NO_VALUES, CncError, Value
 from cnc_ptp.parameters import AxisParameters, ParameterSet
 from cnc_ptp.plc.axis_groups import AxisGroups
 from cnc_ptp.plc.program.plc_io import PlcIo
@@ -284,8 +284,8 @@ class PlcUnit(Unit):
         self.event(cycle, Severity.ERROR, error_id, text, line)
         self.do_stop_all(cycle)
 
-    def _warn(self, cycle: int, number: int, text: str) -> None:
-        self.event(cycle, Severity.WARNING, number, text)
+    def _warn(self, cycle: int, number: int, text: str, values: Mapping[str, Value] = NO_VALUES) -> None:
+        self.report(cycle, Severity.WARNING, number, text, values)
 
     # one block
 

@@ -8,6 +8,7 @@ from itertools import count
 
 from cnc_ptp.axis.external_commands import SETPOINTS
 from cnc_ptp.axis.faults import BAD_SETPOINT
+from cnc_ptp.errors import Value
 from cnc_ptp.plc.setpoint_file import SetpointRow
 from cnc_ptp.protocol.axis_states import StatusBit
 from cnc_ptp.protocol.blocks import AxisBlock, Command, CycleBlock
@@ -15,8 +16,8 @@ from cnc_ptp.protocol.blocks import AxisBlock, Command, CycleBlock
 HORIZON = 60.0
 """Seconds that a setpoint of a topic may be ahead."""
 
-Warn = Callable[[int, int, str], None]
-"""Takes a warning: cycle, number, text."""
+Warn = Callable[[int, int, str, Mapping[str, Value]], None]
+"""Takes a warning: cycle, number, text, and the numbers of the text by name."""
 Waiting = list[tuple[int, int, SetpointRow]]
 """A heap: cycle, order of arrival, row."""
 
@@ -95,9 +96,8 @@ class SetpointQueue:
                 continue
             if cycle > first_cycle + self._horizon:
                 ahead = f"it lies more than {HORIZON:g} s ahead of cycle {first_cycle}"
-                self._warn(
-                    first_cycle, BAD_SETPOINT, f"axis {axis}: external setpoint for cycle {cycle} dropped: {ahead}"
-                )
+                text = f"axis {axis}: external setpoint for cycle {cycle} dropped: {ahead}"
+                self._warn(first_cycle, BAD_SETPOINT, text, {"patience": HORIZON})
                 continue
             if row[-1] == 0:
                 self._waiting[axis] = [entry for entry in self._waiting.get(axis, []) if entry[0] < cycle]

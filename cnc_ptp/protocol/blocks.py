@@ -80,6 +80,8 @@ class CommandRecord:
     """Values of the refusal's text, or what the command was to find out, by name."""
     job: int = field(default=0, compare=False)
     """Number of the job that it has begun (protocol/jobs.py), 0 if none."""
+    warning_id: int = field(default=0, compare=False)
+    """Number of the warning in the message of a command that was carried out, 0 if none."""
 
     @property
     def arguments_json(self) -> str:
@@ -104,6 +106,12 @@ class EventValue(NamedTuple):
     name: str
     value: float
     unit: str = ""
+    role: str = ""
+    """limit, actual, faulty, expected or corrected; empty for another number."""
+
+
+NO_VALUE = EventValue("", 0.0)
+"""In place of one that an event does not have."""
 
 
 @dataclass(slots=True)
@@ -117,6 +125,30 @@ class Event:
     text: str
     line: int = 0
     values: list[EventValue] = field(default_factory=list)
+
+    def of_role(self, role: str) -> EventValue:
+        """The first value that is a limit, an actual value …; NO_VALUE without one."""
+        return next((value for value in self.values if value.role == role), NO_VALUE)
+
+    @property
+    def limit(self) -> EventValue:
+        return self.of_role("limit")
+
+    @property
+    def actual(self) -> EventValue:
+        return self.of_role("actual")
+
+    @property
+    def faulty(self) -> EventValue:
+        return self.of_role("faulty")
+
+    @property
+    def expected(self) -> EventValue:
+        return self.of_role("expected")
+
+    @property
+    def corrected(self) -> EventValue:
+        return self.of_role("corrected")
 
 
 @dataclass(slots=True)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from cnc_ptp.errors import read_warning, warning_text
+from cnc_ptp.errors import WarningText, plain_text, warning_text
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
 from cnc_ptp.protocol.blocks import Severity
 from cnc_ptp.protocol.commands import READING
@@ -19,6 +19,8 @@ MEASURED = 22050
 """Event: what a measuring run has measured."""
 ORDERED_ERROR = 22029
 """Warning or error of #ERROR."""
+NOTHING_TO_STOP = 23073
+"""Warning of a stop, halt or emergency stop of an axis that does not move."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,9 +49,9 @@ class Note:
             return cls(record.error_id, record.message, refused=True)
         if not record.message or record.command in READING:
             return None
-        number, text = read_warning(record.message)
-        idle = record.command == "stop" and text in {without_effect(record.target, "stop", s) for s in AxisStateCode}
-        return cls(number, text, idle_stop=idle)
+        number = record.warning_id
+        idle = number == NOTHING_TO_STOP and record.command == "stop"
+        return cls(number, plain_text(number, record.message), idle_stop=idle)
 
     @classmethod
     def of_event(cls, event: Any) -> Note | None:
@@ -81,9 +83,9 @@ class Notes:
         return iter(self._notes.values())
 
 
-def without_effect(axis: str, command: str, state: AxisStateCode) -> str:
-    """The warning that there was nothing to stop. A record has no place for its number: it is known by this text."""
-    return f"axis {axis}: {command} without effect in {state_name(state)}"
+def without_effect(axis: str, command: str, state: AxisStateCode) -> WarningText:
+    """The warning that there was nothing to stop."""
+    return warning_text(NOTHING_TO_STOP, f"axis {axis}: {command} without effect in {state_name(state)}")
 
 
 def error_text(event: Any) -> str:

@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import Any, ClassVar, NamedTuple
 
-from cnc_ptp.errors import CncError, Value, nearest_name, warning_text
+from cnc_ptp.errors import CncError, Value, WarningText, joined_warnings, nearest_name, warning_text
 from cnc_ptp.protocol.axis_states import AxisStateCode
 from cnc_ptp.protocol.blocks import (
     AxisBlock,
@@ -22,6 +22,7 @@ from cnc_ptp.protocol.blocks import (
 )
 from cnc_ptp.protocol.commands import BAD_ARGUMENT, HELD_OFF, OF_PLC, check_command, current_names, with_floats
 from cnc_ptp.protocol.control_units import PERCENT, ControlUnit
+from cnc_ptp.protocol.event_values import event_values
 from cnc_ptp.protocol.jobs import JOBS, Jobs
 from cnc_ptp.protocol.overlay import HELD_BY_PLC, SERVED_BY_PLC, TAKEN_FROM_PLC, Overlay
 
@@ -58,6 +59,8 @@ class Unit(ABC):
     """
 
     kind: ClassVar[str]
+    length_unit = "mm"
+    """Of its positions: mm or deg."""
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -96,7 +99,7 @@ class Unit(ABC):
                 job = self.begin_job(carried_out, cycle)
         except CncError as error:
             refusal = error
-            self.event(cycle, Severity.WARNING, error.number, error.full_message)
+            self.report(cycle, Severity.WARNING, error.number, error.full_message, error.values)
         shown = {name: value for name, value in command.arguments.items() if name not in OF_PLC}
         record = CommandRecord(
             cycle,
@@ -109,11 +112,13 @@ class Unit(ABC):
             id=command.id,
             values=refusal.values if refusal else self._values,
             job=job,
+            warning_id=0 if refusal else self._warning_id,
         )
         self.records.append(record)
         return record
 
     _warning = ""
+    _warning_id = 0
     _values: Mapping[str, Value] = {}
 
     def begin_job(self, command: Command, cycle: int) -> int:
@@ -126,7 +131,7 @@ class Unit(ABC):
 
     def _dispatch(self, command: Command, cycle: int) -> Command:
         """Returns the command that was carried out: an edge of the PLC stands for another one."""
-        self._warning, self._values, name = "", {}, command.command
+        self._warning, self._warning_id, self._values, name = "", 0, {}, command.command
         arguments = current_names(self.kind, name, command.arguments)
         check_command(self.kind, self.name, name, arguments, self.sources)
         arguments = with_floats(self.kind, name, arguments)
@@ -148,8 +153,10 @@ class Unit(ABC):
         """What a handler has returned goes into the record."""
         if isinstance(answer, Answer):
             self._warning, self._values = answer
-        else:
-            self._warning = answer or ""
+            return
+        self._warning = str(answer or "")
+        if isinstance(answer, WarningText):
+            self._warning_id, self._values = answer.number, answer.values
 
     # a stop that is held
 
@@ -218,11 +225,12 @@ class Unit(ABC):
                     overlay.restore(name, kept)
                 raise
         notes = [*(self._takes(command, name, *kept) for name, kept in taken), *(self._waits(command, n) for n in held)]
-        return "; ".join(filter(None, [message, *notes])) or None
+        return joined_warnings(message, *notes)
 
     def _takes(self, command: str, name: str, value: float | None, holder: str, silent: bool) -> str:
         reason = f"the PLC '{holder}', which had commanded {value:g} and is silent"
-        return warning_text(TAKEN_FROM_PLC, f"{self.kind} {self.name}: {command} takes {name} back from {reason}")
+        text = f"{self.kind} {self.name}: {command} takes {name} back from {reason}"
+        return warning_text(TAKEN_FROM_PLC, text, value=value or 0.0)
 
     def _waits(self, command: str, name: str) -> str:
         served = f"the PLC '{self.overlay.holder(name)}' serves {name} and commands {self.overlay.value(name):g}"
@@ -230,7 +238,7 @@ class Unit(ABC):
         if self.overlay.is_silent(name):
             until += ", or another PLC serves it: it is silent, and only a PLC takes back what holds back"
         text = f"{self.kind} {self.name}: {command} waits: {served}; what is asked for acts {until}"
-        return warning_text(HELD_BY_PLC, text)
+        return warning_text(HELD_BY_PLC, text, value=self.overlay.value(name) or 0.0)
 
     def _refuse_edge(self, command: str, *, by_client: bool) -> None:
         """Only the PLC carries out an edge that it serves; and nothing is reset before an emergency stop is released.
@@ -249,8 +257,10 @@ class Unit(ABC):
         if command == "reset" and self.overlay.value("emergency_stop"):
             raise self._refusal(command, EMERGENCY_HOLDS, "the emergency stop holds; release it first")
 
-    def _refusal(self, command: str, number: int, reason: str, effect: str = "nothing was changed") -> CncError:
-        return CncError(number, reason, effect, where=f"{self.kind} {self.name}: {command} refused")
+    def _refusal(
+        self, command: str, number: int, reason: str, effect: str = "nothing was changed", /, **values: Value
+    ) -> CncError:
+        return CncError(number, reason, effect, where=f"{self.kind} {self.name}: {command} refused", **values)
 
     def _do_overlay(
         self,
@@ -280,7 +290,7 @@ class Unit(ABC):
             kept = self.overlay.give_back(unit.name)
         if self.overlay.arguments(unit.command) != before:
             try:
-                self._warning = self.carry_out(unit.command, cycle) or ""
+                self._note(self.carry_out(unit.command, cycle))
             except CncError:
                 self.overlay.restore(unit.name, kept)
                 raise
@@ -294,7 +304,7 @@ class Unit(ABC):
             self.check_override("overlay", value)
         elif not (0.0 <= value <= unit.largest and value == value // 1.0):
             whole = f"value = {value:g} of {unit.name} is not a whole number within 0 ... {unit.largest:g}"
-            raise self._refusal("overlay", BAD_ARGUMENT, whole)
+            raise self._refusal("overlay", BAD_ARGUMENT, whole, value=value, limit=unit.largest)
         return value
 
     def _edge(
@@ -339,6 +349,12 @@ class Unit(ABC):
         self, cycle: int, severity: int, error_id: int, text: str, line: int = 0, values: Iterable[EventValue] = ()
     ) -> None:
         self.events.append(Event(cycle, self.name, severity, error_id, text, line, list(values)))
+
+    def report(
+        self, cycle: int, severity: int, error_id: int, text: str, values: Mapping[str, Value], line: int = 0
+    ) -> None:
+        """An event with the numbers of its text by name (protocol/event_values.py)."""
+        self.event(cycle, severity, error_id, text, line, event_values(values, self.length_unit))
 
     def take_events(self) -> list[Event]:
         events, self.events = self.events, []

@@ -14,7 +14,8 @@ from mcap.opcode import Opcode
 from mcap.records import Channel, Metadata, Schema
 from mcap_ros2.decoder import DecoderFactory
 
-from cnc_ptp.protocol.blocks import CommandRecord, Event, EventValue, read_values
+from cnc_ptp.protocol.blocks import CommandRecord, Event, read_values
+from cnc_ptp.protocol.event_values import read_event_values
 from cnc_ptp.recording.bag import QOS
 from cnc_ptp.recording.mcap_chunks import McapRecords, MessageRun, RawRecord
 from cnc_ptp.recording.writer import MACHINE_FILE, METADATA, MISSING
@@ -298,7 +299,7 @@ class _Reader:
         return self.names.schemas[self.names.channels[run.channel_id].schema_id]
 
     def _event(self, _time: int, _topic: str, message: Any) -> None:
-        values = [EventValue(value.name, value.value, value.unit) for value in getattr(message, "values", ())]
+        values = read_event_values(message)
         self.recorded.events.append(
             Event(message.cycle, message.source, message.severity, message.error_id, message.text, message.line, values)
         )
@@ -316,6 +317,7 @@ class _Reader:
                 getattr(message, "id", 0),
                 read_values(getattr(message, "values_json", "")),
                 getattr(message, "job", 0),
+                getattr(message, "warning_id", 0),
             )
         )
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from cnc_ptp.errors import NO_VALUES
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.spindle.faults import (
     BAD_RATIO,
@@ -60,8 +61,9 @@ class CouplingCommands:
                 spindle.refuse("couple", BAD_RATIO, f"{name} = {value} must not be 0", argument=name, value=value)
         ratio = factor_num / factor_den
         if not is_permitted(ratio):
-            bounds = f"within ±{SMALLEST_RATIO:g} ... ±{LARGEST_RATIO:g}"
-            spindle.refuse("couple", BAD_RATIO, f"factor_num / factor_den = {ratio:g} is not {bounds}", ratio=ratio)
+            low, high = SMALLEST_RATIO, LARGEST_RATIO
+            reason = f"factor_num / factor_den = {ratio:g} is not within ±{low:g} ... ±{high:g}"
+            spindle.refuse("couple", BAD_RATIO, reason, ratio=ratio, low=low, high=high)
         if self.master or self.wanted:
             other = self.master or self.wanted
             reason = f"the spindle is a slave of {other}; decouple it first"
@@ -75,7 +77,7 @@ class CouplingCommands:
             self.master, self._ratio = master, self._wanted_ratio
         elif master:
             text = f"spindle {self._spindle.name}: not coupled to {master}: {reason}; nothing was changed"
-            self._spindle.report_warning(cycle, COUPLING_CHAIN, text)
+            self._spindle.report_warning(cycle, COUPLING_CHAIN, text, NO_VALUES)
 
     def do_decouple(self, cycle: int, *, owner: str = "") -> str | None:
         """The spindle continues unchanged on its own; a channel ends its own couplings only. Refused with 24023."""

@@ -54,6 +54,7 @@ class GearCommands:
         if abs(procedure.resume) > spindle.gear.max_speed:
             rpm, limit = abs(procedure.resume) / DEG_S_PER_RPM, spindle.gear.max_speed / DEG_S_PER_RPM
             above = f"the previous speed {rpm:g} rpm is above the maximum {limit:g} rpm of gear {spindle.gear.stage}"
-            return spindle.warn(cycle, SPEED_LIMITED, f"{above} (P-AXIS-00212); the spindle stays at rest")
+            reason = f"{above} (P-AXIS-00212); the spindle stays at rest"
+            return spindle.warn(cycle, SPEED_LIMITED, reason, speed=rpm, limit=limit)
         spindle.rotate(cycle, procedure.resume)
         return None

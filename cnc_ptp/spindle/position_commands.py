@@ -90,6 +90,7 @@ def slower_positioning(spindle: Spindle, cycle: int, speed: float) -> str | None
     used = limits.max_positioning_speed
     if speed <= used:
         return None
-    rpm, used_rpm = speed / DEG_S_PER_RPM, f"{used / DEG_S_PER_RPM:g} rpm"
-    bound = "maximum of the tool" if used == limits.max_speed else f"control limit {used_rpm} (P-AXIS-00220)"
-    return spindle.warn(cycle, SPEED_LIMITED, f"speed {rpm:g} rpm is above the {bound}, {used_rpm} is used")
+    rpm, used_rpm = speed / DEG_S_PER_RPM, used / DEG_S_PER_RPM
+    bound = "maximum of the tool" if used == limits.max_speed else f"control limit {used_rpm:g} rpm (P-AXIS-00220)"
+    reason = f"speed {rpm:g} rpm is above the {bound}, {used_rpm:g} rpm is used"
+    return spindle.warn(cycle, SPEED_LIMITED, reason, speed=rpm, corrected=used_rpm)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from math import copysign
 
 from cnc_ptp.control.faults import TARGET_MISSED
+from cnc_ptp.errors import Value
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.spindle_states import SpindleMode
@@ -195,8 +196,9 @@ class Procedures:
             spindle.referenced, spindle.reference_lost = True, False
             return True
         if abs(position - self._search_from) > PATIENCE:
-            reason = f"no zero pulse came in {PATIENCE:g} deg at homing speed {self._homing_speed:g} deg/s"
-            spindle.fault(cycle, NO_ZERO_PULSE, f"{reason} (P-AXIS-00218)")
+            velocity = self._homing_speed
+            reason = f"no zero pulse came in {PATIENCE:g} deg at homing speed {velocity:g} deg/s (P-AXIS-00218)"
+            spindle.fault(cycle, NO_ZERO_PULSE, reason, {"range": PATIENCE, "velocity": velocity})
         return False
 
     def _stands(self, cycle: int, actual_speed: float) -> bool:
@@ -213,8 +215,9 @@ class Procedures:
         if spindle.note_position(cycle, away, actual_speed):
             return True
         if self._too_long(spindle.cycles_since_end(cycle)):
-            since = f"{spindle.parameters.target_time:g} s after its end the positioning"
-            spindle.fault(cycle, TARGET_MISSED, f"{since} {self._missed(away, actual_speed)}")
+            time = spindle.parameters.target_time
+            reason = f"{time:g} s after its end the positioning {self._missed(away, actual_speed)}"
+            spindle.fault(cycle, TARGET_MISSED, reason, {**self._missed_by(away, actual_speed), "time": time})
         return False
 
     def hold(self, cycle: int, actual: float, actual_speed: float) -> None:
@@ -225,8 +228,10 @@ class Procedures:
         away = spindle.target - actual
         spindle.note_position(cycle, away, actual_speed)
         if self._too_long(cycle - spindle.exact_stop.left_at):
-            since = f"the position was left and has not come back for {spindle.parameters.target_time:g} s: the spindle"
-            spindle.fault(cycle, TARGET_MISSED, f"{since} {self._missed(away, actual_speed)}")
+            time = spindle.parameters.target_time
+            since = f"the position was left and has not come back for {time:g} s: the spindle"
+            reason = f"{since} {self._missed(away, actual_speed)}"
+            spindle.fault(cycle, TARGET_MISSED, reason, {**self._missed_by(away, actual_speed), "time": time})
 
     def _too_long(self, cycles: float) -> bool:
         """True if the position has been missing for too many `cycles` and is not about to be reached."""
@@ -242,6 +247,13 @@ class Procedures:
         limit = f"zero speed {gear.zero_speed / DEG_S_PER_RPM:g} rpm (P-AXIS-00216)"
         return f"still turns at {abs(actual_speed) / DEG_S_PER_RPM:g} rpm, more than the {limit}"
 
+    def _missed_by(self, away: float, actual_speed: float) -> dict[str, Value]:
+        """The numbers of `_missed`."""
+        gear = self._spindle.gear
+        if abs(away) > gear.position_window:
+            return {"distance": abs(away), "limit": gear.position_window}
+        return {"actual_speed": abs(actual_speed) / DEG_S_PER_RPM, "limit": gear.zero_speed / DEG_S_PER_RPM}
+
     def _shifted(self, cycle: int) -> bool:
         """Only the PLC ends this step; an error if it does not in time."""
         spindle = self._spindle
@@ -249,7 +261,7 @@ class Procedures:
         if patience and (cycle - self._since) * spindle.cycle_time >= patience:
             stage = self._current().stage
             reason = f"the PLC has not acknowledged the change to gear {stage} within {patience:g} s (P-MACH-00051)"
-            spindle.fault(cycle, GEAR_NOT_ACKNOWLEDGED, reason)
+            spindle.fault(cycle, GEAR_NOT_ACKNOWLEDGED, reason, {"patience": patience})
         return False
 
     def _finish(self) -> None:

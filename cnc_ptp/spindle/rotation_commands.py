@@ -66,7 +66,7 @@ class RotationCommands:
         bound = "above the maximum" if used < speed else "below the minimum"
         used_rpm = used / DEG_S_PER_RPM
         text = f"speed {speed_rpm} rpm is {bound} of the tool, {used_rpm:g} rpm is used"
-        return self._spindle.warn(cycle, SPEED_LIMITED, text)
+        return self._spindle.warn(cycle, SPEED_LIMITED, text, speed=speed_rpm, corrected=used_rpm)
 
     def do_stop(self, cycle: int, *, homes: bool = True) -> None:
         """M05: down to speed 0; a spindle that turns and has exceeded the control limit homes before it stops.

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from math import copysign, inf
 from typing import NoReturn
 
 from cnc_ptp.control.drives import Drive
-from cnc_ptp.errors import CncError, Value, warning_text
+from cnc_ptp.errors import NO_VALUES, CncError, Value, warning_text
 from cnc_ptp.motion.setpoints import Setpoints
 from cnc_ptp.parameters import GearParameters, SpindleParameters
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
@@ -23,8 +23,8 @@ from cnc_ptp.spindle.speed_ramp import plan_speed
 from cnc_ptp.spindle.speed_table import Motion, SpeedTable
 from cnc_ptp.spindle.tool_limits import SpindleLimits, ToolLimits
 
-Report = Callable[[int, int, str], None]
-"""Takes an event: cycle, number, text."""
+Report = Callable[[int, int, str, Mapping[str, Value]], None]
+"""Takes an event: cycle, number, text, and the numbers of the text by name."""
 
 
 class Spindle:
@@ -89,11 +89,11 @@ class Spindle:
         self.report_error = report_error
         self.report_warning = report_warning
 
-    def warn(self, cycle: int, number: int, reason: str) -> str:
+    def warn(self, cycle: int, number: int, reason: str, /, **values: Value) -> str:
         """Reports a warning as an event; returns it as the record of a command shows it."""
         text = f"spindle {self.name}: {reason}"
-        self.report_warning(cycle, number, text)
-        return warning_text(number, text)
+        self.report_warning(cycle, number, text, values)
+        return warning_text(number, text, **values)
 
     # setpoints
 
@@ -312,8 +312,8 @@ class Spindle:
         if self.state == S.DISABLED:
             self.refuse(command, NOT_READY, "the spindle is in Disabled; power it on", state="Disabled")
 
-    def fault(self, cycle: int, error_id: int, reason: str) -> None:
-        """Error reaction: down to speed 0 on the spindle's ramp, state ErrorStop."""
+    def fault(self, cycle: int, error_id: int, reason: str, values: Mapping[str, Value] = NO_VALUES) -> None:
+        """Error reaction: down to speed 0 on the spindle's ramp, state ErrorStop; `values`: numbers of the reason."""
         had_job = self.work.procedure is not None or not self.speed_was_reached
         if self.state == S.DISABLED and self.loop.measures_position:
             self.place(cycle, self.loop.position)
@@ -326,10 +326,10 @@ class Spindle:
         if self.travel is not None and self.travel.stop is not None:
             how = "in step with the axes of the path"
         text = f"spindle {self.name}: {reason}; the spindle stops {how} (ErrorStop)"
-        self.report_error(cycle, error_id, text)
+        self.report_error(cycle, error_id, text, values)
 
     def fail(self, command: str, cycle: int, number: int, reason: str, /, **values: Value) -> NoReturn:
         """A command that is refused and puts the spindle into ErrorStop."""
-        self.fault(cycle, number, reason)
+        self.fault(cycle, number, reason, values)
         self.job_error = True
         raise self._refusal(command, number, reason, "the spindle is in ErrorStop", **values)

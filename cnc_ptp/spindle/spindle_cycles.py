@@ -113,7 +113,7 @@ class SpindleCycles:
     def _watch_following_error(self, cycle: int, setpoint: MotionState) -> None:
         spindle, control = self._spindle, self._spindle.loop.control
         if self._watched() and control.too_far(setpoint):
-            spindle.fault(cycle, FOLLOWING_ERROR, control.why_too_far(setpoint, "deg"))
+            spindle.fault(cycle, FOLLOWING_ERROR, control.why_too_far(setpoint, "deg"), control.lag_values(setpoint))
 
     def _watched(self) -> bool:
         spindle = self._spindle
@@ -148,12 +148,13 @@ class SpindleCycles:
         if held or not patience or spindle.cycles_without_speed(cycle) < patience:
             return
         wanted = spindle.wanted_speed / DEG_S_PER_RPM
-        seconds = f"{spindle.parameters.speed_time:g} s"
-        missing = f"was not reached {seconds} after the setpoint"
+        seconds = spindle.parameters.speed_time
+        missing = f"was not reached {seconds:g} s after the setpoint"
         if spindle.speed_lost_at > -inf:
-            missing = f"was lost and has not come back for {seconds}"
+            missing = f"was lost and has not come back for {seconds:g} s"
         limit = ids.KENNGR_VB_PROZENT if wanted else ids.GETRIEBE_VB_MIN_NULL
-        spindle.fault(cycle, SPEED_NOT_REACHED, f"speed {wanted:g} rpm {missing} ({limit}, P-MACH-00050)")
+        reason = f"speed {wanted:g} rpm {missing} ({limit}, P-MACH-00050)"
+        spindle.fault(cycle, SPEED_NOT_REACHED, reason, {"expected_speed": wanted, "patience": seconds})
 
     def _bits(self) -> int:
         spindle = self._spindle

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 from cnc_ptp.control.commands import FEEDFORWARD_WAITS, FeedforwardCommands, feedforward_warning
 from cnc_ptp.control.drives import Drive, make_drive
-from cnc_ptp.errors import CncError, warning_text
+from cnc_ptp.errors import NO_VALUES, CncError, Value, joined_warnings, warning_text
 from cnc_ptp.parameters import AxisParameters, GearParameters, SpindleParameters
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
@@ -38,6 +38,7 @@ class SpindleUnit(Unit):
     """
 
     kind: ClassVar[str] = "spindle"
+    length_unit = "deg"
 
     def __init__(
         self,
@@ -98,8 +99,10 @@ class SpindleUnit(Unit):
         plant = replace(gear.control.plant, start_position=position)
         return self._given_drive or make_drive(replace(gear.control, plant=plant), self._cycle_time)
 
-    def _report(self, severity: Severity, cycle: int, error_id: int, text: str) -> None:
-        self.event(cycle, severity, error_id, text)
+    def _report(
+        self, severity: Severity, cycle: int, error_id: int, text: str, values: Mapping[str, Value] = NO_VALUES
+    ) -> None:
+        self.report(cycle, severity, error_id, text, values)
 
     @property
     def master(self) -> str | None:
@@ -162,7 +165,7 @@ class SpindleUnit(Unit):
             self._waiting_jobs.add(job)
         else:
             left = self._leave_master_by(command, source, cycle)
-            message = "; ".join(filter(None, (left, self._carry_out(cycle, queued)))) or None
+            message = joined_warnings(left, self._carry_out(cycle, queued))
         self._queue.taken += source == PLC
         self._job_given = job
         return message
@@ -260,7 +263,7 @@ class SpindleUnit(Unit):
                 self._waiting_jobs.discard(command.job)
                 if command.job:
                     self.jobs.drop(cycle, command.job, error.number)
-                self.event(cycle, Severity.WARNING, error.number, error.message)
+                self.report(cycle, Severity.WARNING, error.number, error.message, error.values)
                 if command.source:
                     self._refused.append(Refusal(command.source, error.number, error.message))
 
@@ -338,7 +341,9 @@ class SpindleUnit(Unit):
         block = self._cycles.block(first_cycle, count)
         warning = feedforward_warning(self.spindle.loop.feedforward, block.set_speed_rpm[-1] * DEG_S_PER_RPM, "deg")
         if warning is not None:
-            self.event(first_cycle + count - 1, Severity.WARNING, FEEDFORWARD_WAITS, f"spindle {self.name}: {warning}")
+            text, values = warning
+            text = f"spindle {self.name}: {text}"
+            self.report(first_cycle + count - 1, Severity.WARNING, FEEDFORWARD_WAITS, text, values)
         block.gear_request = self.spindle.work.gear_request
         block.master, block.master_wanted = self._coupling.master, self._coupling.wanted
         block.source = self._queue.source
@@ -392,7 +397,7 @@ class SpindleUnit(Unit):
         except CncError as error:
             if can_follow(self.spindle):
                 reason = f"cannot carry out '{command.name}' of its master {self._coupling.master}: {error.reason}"
-                self.spindle.fault(cycle, SLAVE_CANNOT, reason)
+                self.spindle.fault(cycle, SLAVE_CANNOT, reason, error.values)
 
 
 def why_it_stays(block: SpindleBlock) -> str:

@@ -27,7 +27,7 @@ from cnc_ptp.axis.monitoring import Monitoring
 from cnc_ptp.parameters.view.control_view import ControlParameters, LagMonitoring
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import StatusBit
-from cnc_ptp.protocol.blocks import CycleTick, Severity
+from cnc_ptp.protocol.blocks import CycleTick, EventValue, Severity
 
 # ---------------------------------------------------------------- what a user sees
 
@@ -177,7 +177,10 @@ def test_a_standing_axis_that_is_pushed_out_of_place() -> None:
         "P-ERR-17744 axis x: following error 0.5000 mm exceeds 0.2 mm (P-AXIS-00169); the axis stops on its own ramp "
         "(ErrorStop)"
     ]
-    assert bench.events[0].cycle == pytest.approx(end + 100, abs=1)
+    event = bench.events[0]
+    assert event.cycle == pytest.approx(end + 100, abs=1)
+    assert event.limit == EventValue("limit", 0.2, "mm", "limit")
+    assert event.actual == EventValue("following_error", pytest.approx(0.5, abs=5e-5), "mm", "actual")
 
 
 def test_behind_a_delay_line_the_text_has_the_error_of_the_position_controller() -> None:

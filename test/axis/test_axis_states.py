@@ -42,9 +42,9 @@ def refused(number: int, commands: tuple[str, ...], states: tuple[str, ...], rea
     }
 
 
-def warned(commands: tuple[str, ...], states: tuple[str, ...], text: str) -> Texts:
+def warned(commands: tuple[str, ...], states: tuple[str, ...], text: str, number: str = "") -> Texts:
     return {
-        (command, state): "axis x: " + text.format(command=command.split()[0], state=NAME[state])
+        (command, state): f"{number}axis x: " + text.format(command=command.split()[0], state=NAME[state])
         for command in commands
         for state in states
     }
@@ -160,8 +160,8 @@ WARNINGS: Texts = {
         "power is on already",
     ),
     **warned(("power off",), ("disabled", "powered_off_in_motion"), "power is off already"),
-    **warned(STOPS, (*AT_REST, *IN_ERROR), "{command} without effect in {state}"),
-    **warned(STOPS[:2], ("stopping", "powered_off_in_motion"), "{command} without effect in {state}"),
+    **warned(STOPS, (*AT_REST, *IN_ERROR), "{command} without effect in {state}", "P-WARN-23073 "),
+    **warned(STOPS[:2], ("stopping", "powered_off_in_motion"), "{command} without effect in {state}", "P-WARN-23073 "),
     **warned(STOPS, ("waiting",), "{command} cancels the waiting new target; the axis stops"),
     **warned(("set_override",), ("halting", "jog_ended", *STOPPED), f"{OVERRIDE_IDLE} (the axis stops)"),
     **warned(("set_override",), ("braking",), f"{OVERRIDE_IDLE} (brake phase or level out of reach)"),

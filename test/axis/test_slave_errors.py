@@ -312,6 +312,16 @@ def test_a_master_that_was_lost_before_moves_nobody() -> None:
     assert set(bench.column("y", "set_position")) == {0.0}
 
 
+def test_a_master_whose_node_is_lost_is_refused() -> None:
+    """The PLC has lost it."""
+    bench = SlaveBench()
+    bench.give("plc", "upstream_lost", source="x")
+    bench.run(0.05)
+    record = bench.send("y", "couple", master="x", factor=1.0)
+    text = "axis y: couple refused: the node of the master x is lost; nothing was changed"
+    assert (record.error_id, record.message) == (23042, text)
+
+
 def test_the_plc_lost_stops_all_axes_of_a_group() -> None:
     bench = group(PTP)
     for axis in "xyz":

@@ -268,7 +268,7 @@ def test_a_refusal_is_told_once(tmp_path):
     result = call("simulate", MILL, "--scenario", path)
     assert [line for line in result.output.splitlines() if "largest" not in line and "time" not in line] == [
         "refused: P-ERR-20131 mdi line 1 column 1 'G77': unknown G function G77; nothing was executed",
-        "warning: axis y: stop without effect in Standstill",
+        "warning: P-WARN-23073 axis y: stop without effect in Standstill",
         "1 command was refused",
     ]
 
@@ -289,24 +289,29 @@ def test_a_refusal_is_told_once_in_whatever_order_command_and_event_come():
 
 def test_a_warning_is_told_once_whether_command_or_event_tells_it():
     notes = Notes()
-    notes.add(Note.of_command(CommandRecord(0, "s", "orient", "{}", True, 0, "P-WARN-24003 spindle s: no limit")))
+    notes.add(
+        Note.of_command(
+            CommandRecord(0, "s", "orient", "{}", True, 0, "P-WARN-24003 spindle s: no limit", warning_id=24003)
+        )
+    )
     notes.add(Note.of_event(Event(0, "s", Severity.WARNING, 24003, "spindle s: no limit")))
     notes.add(Note.of_command(CommandRecord(0, "s", "orient", "{}", True, 0, "spindle s: no limit")))
     assert [*map(str, notes)] == ["warning: P-WARN-24003 spindle s: no limit", "warning: spindle s: no limit"]
 
 
 @pytest.mark.parametrize(
-    ("command", "message", "idle"),
+    ("command", "number", "message", "idle"),
     [
-        ("stop", "axis x: stop without effect in Standstill", True),
-        ("stop", "axis x: stop without effect in Disabled", True),
-        ("stop", "axis y: stop without effect in Standstill", False),
-        ("stop", "axis x: stop cancels the waiting new target; the axis stops", False),
-        ("halt", "axis x: halt without effect in Standstill", False),
+        ("stop", 23073, "P-WARN-23073 axis x: stop without effect in Standstill", True),
+        ("stop", 23073, "P-WARN-23073 whatever the words are", True),
+        ("stop", 0, "axis x: stop without effect in Standstill", False),
+        ("stop", 0, "axis x: stop cancels the waiting new target; the axis stops", False),
+        ("halt", 23073, "P-WARN-23073 axis x: halt without effect in Standstill", False),
     ],
 )
-def test_a_stop_of_an_axis_that_stands_is_known(command, message, idle):
-    note = Note.of_command(CommandRecord(0, "x", command, "{}", True, 0, message))
+def test_a_stop_of_an_axis_that_stands_is_known(command, number, message, idle):
+    """By the number of the warning, not by its words; an older recording has none."""
+    note = Note.of_command(CommandRecord(0, "x", command, "{}", True, 0, message, warning_id=number))
     assert note.idle_stop == idle and str(note) == f"warning: {message}"
 
 

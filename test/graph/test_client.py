@@ -133,7 +133,7 @@ def test_stop_ends_on_the_ramp(client):
     assert client.state_at("y", response.cycle, "state") == AxisStateCode.STOPPING
     end = client.wait_last("y", stands, "standstill")
     assert 0.0 < end.set_position[-1] < 150.0
-    assert client.call("y", "stop").message == "axis y: stop without effect in Standstill"
+    assert client.call("y", "stop").message == "P-WARN-23073 axis y: stop without effect in Standstill"
     client.done("y", "move_absolute", target=0.0)
     client.wait_last("y", stands, "standstill")
 

@@ -76,7 +76,10 @@ def test_commands_are_carried_out_and_waited_for(machine):
 
 def test_a_warning_is_shown_and_a_refusal_is_status_1(machine):
     done = call("do", "x", "halt")
-    assert (done.exit_code, done.stdout.splitlines()[1:]) == (0, ["warning: axis x: halt without effect in Standstill"])
+    assert (done.exit_code, done.stdout.splitlines()[1:]) == (
+        0,
+        ["warning: P-WARN-23073 axis x: halt without effect in Standstill"],
+    )
     done = call("do", "x", "move_absolute", "1e5")
     assert (done.exit_code, done.stdout) == (1, "")
     assert done.stderr == (

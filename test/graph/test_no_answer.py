@@ -1,5 +1,6 @@
 """Messages of commands when a machine, or a part of it, does not answer."""
 
+from concurrent.futures import Future
 from contextlib import nullcontext
 
 import pytest
@@ -8,6 +9,8 @@ from graph_support import MILL, run
 from live_support import call
 
 from cnc_ptp import msg
+from cnc_ptp.client.graph_link import GraphLink
+from cnc_ptp.errors import CncError
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.nodes import player, process
 from cnc_ptp.nodes.bridge.coupling_services import PATIENCE as COUPLING_PATIENCE
@@ -48,6 +51,22 @@ def test_a_command_without_an_answer_may_have_been_carried_out(client, words, se
         f"P-ERR-26136 axis x: {words[0]}: no answer within {seconds:g} s; "
         "whether it was carried out is not known, see `cnc_ptp status`\n"
     )
+
+
+def test_parameters_without_an_answer(client):
+    with pytest.raises(CncError) as refused:
+        client.parameters_of("x")
+    text = f"axis x: its parameters: no answer within {PATIENCE:g} s; nothing was read"
+    assert str(refused.value) == f"P-ERR-26136 {text}"
+
+
+def test_an_answer_that_was_given_up_by_a_client_that_has_ended():
+    link = object.__new__(GraphLink)
+    link._gone, link._asked = None, {7: Future()}
+    link._asked[7].cancel()
+    with pytest.raises(CncError) as refused:
+        link.answer(7)
+    assert str(refused.value) == "P-ERR-26171 the client has ended; nothing was sent"
 
 
 @pytest.mark.parametrize("value", [258, -1, 99999999999999999999999])

@@ -331,7 +331,7 @@ CASES: list[tuple[int, Ask, str, dict[str, Any]]] = [
         23018,
         of_unit(moving_axis, "compensation_start", **COMPENSATION | {"length": 1e300}),
         "axis x: compensation_start refused: length = 1e+300 must be between 1e-09 and 1e+12; nothing was changed",
-        {"argument": "length", "value": 1e300},
+        {"argument": "length", "value": 1e300, "low": 1e-9, "high": 1e12},
     ),
     (
         23018,
@@ -537,7 +537,7 @@ CASES: list[tuple[int, Ask, str, dict[str, Any]]] = [
         of_y(SlaveBench, "couple", master="x", factor=1e300),
         "axis y: couple refused: factor = 1e+300 must be between 1e-06 and 1e+06 or the negative of it; nothing was "
         "changed",
-        {"argument": "factor", "value": 1e300},
+        {"argument": "factor", "value": 1e300, "low": 1e-6, "high": 1e6},
     ),
     (
         23044,
@@ -617,7 +617,7 @@ CASES: list[tuple[int, Ask, str, dict[str, Any]]] = [
         23052,
         of_y(SlaveBench, "couple_cam", master="x", table=[[0.0, 0.0], [5.0, 1e13], [9.0, 0.0]], cyclic=False),
         "axis y: couple_cam refused: the points of a cam table must lie within ±1e+12; nothing was changed",
-        {},
+        {"limit": 1e12},
     ),
     (
         23054,

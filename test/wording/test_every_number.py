@@ -24,6 +24,7 @@ APART = {
     25102: "plc/test_setpoint_file.py",
     25103: "axis/test_slave_kinds_cyclic.py",
     26103: "graph/test_client.py",
+    26124: "catalogue/test_catalogue.py",
     26118: "graph/test_slaves.py",
     26119: "graph/test_spindles.py",
     26142: "graph/test_gap.py",

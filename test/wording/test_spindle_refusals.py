@@ -285,7 +285,7 @@ CASES: list[tuple[int, Ask, str, dict[str, Any], str, dict[str, Any]]] = [
         "couple",
         {"master": "t", "factor_num": 1e9},
         "spindle s: couple refused: factor_num / factor_den = 1e+09 is not within ±1e-06 ... ±1e+06; nothing was changed",
-        {"ratio": 1e9},
+        {"ratio": 1e9, "low": 1e-6, "high": 1e6},
     ),
     (
         24027,

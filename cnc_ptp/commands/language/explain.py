@@ -1,15 +1,23 @@
-"""`cnc_ptp explain G61`: what a word of the NC language means."""
+"""`cnc_ptp explain G61`, `cnc_ptp explain 70349`: what a word of the NC language or an error number means."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from cnc_ptp.commands.language.explain_number import explained, numbers_of
 from cnc_ptp.commands.language.word_errors import error_texts
 from cnc_ptp.commands.language.words import Entry, find
 
 
 def explain(words: Sequence[str], dialect: str = "twincat") -> int:
-    """Prints syntax, meaning, group and an example of each word. Raises CncError 26123."""
+    """Prints syntax, meaning, group and an example of each word, or all about each number.
+
+    Raises CncError 26123 for an unknown word, 26124 for an unknown number.
+    """
+    numbers = numbers_of(words)
+    if numbers:
+        print(explained(numbers))
+        return 0
     found = [entry for word in words for entry in find(word, dialect)]
     print("\n\n".join("\n".join(lines(entry, dialect)) for entry in found))
     return 0

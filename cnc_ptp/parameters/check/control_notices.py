@@ -60,9 +60,9 @@ def control_notices(parameters: ParameterSet, cycle_time: float) -> Iterator[Not
 def delays(parameters: ParameterSet, cycle_time: float) -> Iterator[Notice]:
     for number, error_id in DELAYS.items():
         if parameters.number(number) and not permitted_delay(parameters, number, cycle_time):
-            limit = f"{DELAY_CYCLES} interpolator cycles ({DELAY_CYCLES * cycle_time * 1e6:g} µs)"
-            text = f"delay {parameters.number(number)} µs is not below {limit}, 0 is used"
-            values = (("limit", DELAY_CYCLES * cycle_time * 1e6, "µs"),)
+            delay, cycles, limit = parameters.number(number), DELAY_CYCLES, DELAY_CYCLES * cycle_time * 1e6
+            text = f"delay {delay} µs is not below {cycles} interpolator cycles ({limit:g} µs), 0 is used"
+            values = (("limit", limit, "µs"), ("corrected", 0.0, "µs"))
             yield notice(parameters, number, (), text, error_id=error_id, values=values)
 
 
@@ -75,7 +75,15 @@ def denominators(parameters: ParameterSet) -> Iterator[Notice]:
         yield notice(parameters, ids.ANTR_ACC_REFERENCE_VALUE, (), text, error_id=NO_TORQUE_SCALE)
     if parameters.number(ids.VORSTEUER_JERK_FACT_DENOM) == 0:
         text = f"value 0 is not a valid denominator, {DEFAULT_JERK_DENOMINATOR} is used"
-        yield notice(parameters, ids.VORSTEUER_JERK_FACT_DENOM, (), text, error_id=NO_JERK_DENOMINATOR)
+        corrected = (("corrected", float(DEFAULT_JERK_DENOMINATOR), ""),)
+        yield notice(
+            parameters,
+            ids.VORSTEUER_JERK_FACT_DENOM,
+            (),
+            text,
+            error_id=NO_JERK_DENOMINATOR,
+            values=corrected,
+        )
 
 
 def outputs_torque(parameters: ParameterSet) -> bool:

@@ -167,9 +167,11 @@ def require_velocity(settings: ThreadSettings, slopes: Sequence[float], motion: 
         needed = abs(m) * speed
         if needed > axis.velocity:
             lead = max(pitch_of(motion), last_pitch_of(motion)) * TURN
-            thread = f"a thread with {lead:g} mm per revolution at {speed / DEG_S_PER_RPM:.6g} rpm"
+            rpm = speed / DEG_S_PER_RPM
+            thread = f"a thread with {lead:g} mm per revolution at {rpm:.6g} rpm"
             reason = f"{thread} needs {needed:.6g} mm/s of axis {name}, its limit is {axis.velocity:.6g} mm/s"
-            raise CncError(THREAD_TOO_FAST, f"{reason} (P-AXIS-00212)", needed=needed, limit=axis.velocity)
+            reason += " (P-AXIS-00212)"
+            raise CncError(THREAD_TOO_FAST, reason, velocity=needed, limit=axis.velocity, at_speed=rpm, lead=lead)
 
 
 def bends_too_much(settings: ThreadSettings, bends: Sequence[float], speed: float) -> bool:
@@ -185,10 +187,10 @@ def _require_acceleration(settings: ThreadSettings, bends: Sequence[float], moti
     for name, c, axis in zip(settings.names, bends, settings.limits, strict=True):
         needed, limit = abs(c) * speed * speed, BEND_SHARE * min(axis.acceleration, axis.deceleration)
         if needed > limit:
-            change = f"a lead that changes by {abs(words_of(motion).change):g} mm per revolution"
-            reason = f"{change} at {speed / DEG_S_PER_RPM:.6g} rpm needs {needed:.6g} mm/s² of axis {name}"
-            reason += f", it may take {limit:.6g} mm/s²"
-            raise CncError(LEAD_TOO_FAST, reason, needed=needed, limit=limit)
+            change, rpm = abs(words_of(motion).change), speed / DEG_S_PER_RPM
+            reason = f"a lead that changes by {change:g} mm per revolution at {rpm:.6g} rpm needs {needed:.6g} mm/s² of"
+            reason += f" axis {name}, it may take {limit:.6g} mm/s²"
+            raise CncError(LEAD_TOO_FAST, reason, acceleration=needed, limit=limit, at_speed=rpm, change=change)
 
 
 def _require_length(geometry: ThreadGeometry, ramps: Ramps, number: int, motion: LinearMove, speed: float) -> None:
@@ -202,9 +204,10 @@ def _require_length(geometry: ThreadGeometry, ramps: Ramps, number: int, motion:
         parts = f"{'run-up' if number == 0 else 'joint'} {begin * pitch:.3f} mm"
         parts += f" and {'run-out' if is_last else 'joint'} {end * last_pitch:.3f} mm"
         length = 0.5 * angle * (pitch + last_pitch)
-        reason = f"block {number + 1} of the thread is {missing * last_pitch:.3f} mm too short at"
-        reason += f" {speed / DEG_S_PER_RPM:.6g} rpm: {parts} need more than its {length:.3f} mm"
-        raise CncError(THREAD_TOO_SHORT, reason, missing=missing * last_pitch)
+        rpm, short = speed / DEG_S_PER_RPM, missing * last_pitch
+        reason = f"block {number + 1} of the thread is {short:.3f} mm too short at"
+        reason += f" {rpm:.6g} rpm: {parts} need more than its {length:.3f} mm"
+        raise CncError(THREAD_TOO_SHORT, reason, missing=short, at_speed=rpm, length=length)
 
 
 def _require_pitch_soon(settings: ThreadSettings, ramps: Ramps, motion: LinearMove) -> None:

@@ -200,8 +200,10 @@ class ThreadPath(ActiveMotion):
         if self.waits or self._stops or self._told_override or (override == 1.0 and not held):
             return
         self._told_override = True
-        what = "feed hold" if held else f"path override {override * 100.0:g} %"
-        self.notes.append((Severity.WARNING, NO_OVERRIDE, f"{what} has no effect within a thread, it counts behind it"))
+        percent = override * 100.0
+        what = "feed hold" if held else f"path override {percent:g} %"
+        text = f"{what} has no effect within a thread, it counts behind it"
+        self.notes.append((Severity.WARNING, NO_OVERRIDE, text, {} if held else {"percent": percent}))
 
     # from block to block
 
@@ -352,9 +354,10 @@ class ThreadPath(ActiveMotion):
 
     def _note_begin(self, geometry: ThreadGeometry) -> None:
         first, last = pitch_of(self._motions[0]), last_pitch_of(self._motions[len(geometry) - 1])
-        speed = f"{self._speed / DEG_S_PER_RPM:.1f} rpm"
-        ways = f"run-up {self._ramps.run_up * first:.3f} mm, run-out {self._ramps.run_out * last:.3f} mm"
-        self.notes.append((Severity.INFO, THREAD_BEGINS, f"thread at {speed}: {ways}"))
+        speed, run_up, run_out = self._speed / DEG_S_PER_RPM, self._ramps.run_up * first, self._ramps.run_out * last
+        text = f"thread at {speed:.1f} rpm: run-up {run_up:.3f} mm, run-out {run_out:.3f} mm"
+        values = {"actual_speed": speed, "run_up": run_up, "run_out": run_out}
+        self.notes.append((Severity.INFO, THREAD_BEGINS, text, values))
 
     # the angle of the path
 
