@@ -30,7 +30,9 @@ def test_simulate_tells_them_and_they_are_events(files, tmp_path):
     assert result.stdout.splitlines()[-1] == f"warning: P-WARN-110386 {text}"
     events = [event for event in read_recording(tmp_path / "a.mcap").events if event.severity == 1]
     assert [(event.cycle, event.source, event.error_id, event.text) for event in events] == [(0, "plc", 110386, text)]
-    assert [tuple(value) for value in events[0].values] == [("P-AXIS-00234", 0.0, "increments")]
+    faulty, corrected = events[0].faulty, events[0].corrected
+    assert tuple(faulty) == ("P-AXIS-00234", 0.0, "increments", "faulty")
+    assert tuple(corrected) == ("corrected", 1.0, "increments", "corrected")
     assert call("replay", tmp_path / "a.mcap").exit_code == 0
 
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 
 from cnc_ptp.parameters.declare import ids
-from cnc_ptp.parameters.read.messages import Notice, notice
+from cnc_ptp.parameters.read.messages import OWN_UNIT, Notice, notice
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.view.control_view import (
     ACC,
@@ -75,7 +75,7 @@ def denominators(parameters: ParameterSet) -> Iterator[Notice]:
         yield notice(parameters, ids.ANTR_ACC_REFERENCE_VALUE, (), text, error_id=NO_TORQUE_SCALE)
     if parameters.number(ids.VORSTEUER_JERK_FACT_DENOM) == 0:
         text = f"value 0 is not a valid denominator, {DEFAULT_JERK_DENOMINATOR} is used"
-        corrected = (("corrected", float(DEFAULT_JERK_DENOMINATOR), ""),)
+        corrected = (("corrected", float(DEFAULT_JERK_DENOMINATOR), OWN_UNIT),)
         yield notice(
             parameters,
             ids.VORSTEUER_JERK_FACT_DENOM,

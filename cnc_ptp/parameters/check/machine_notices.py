@@ -7,7 +7,7 @@ from cnc_ptp.parameters.check.friction_notices import friction_notices
 from cnc_ptp.parameters.check.spindle_checks import above_control_limit
 from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
-from cnc_ptp.parameters.read.messages import Notice, notice
+from cnc_ptp.parameters.read.messages import OWN_UNIT, Notice, notice
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.view.axis_view import is_facing, is_modulo
 from cnc_ptp.parameters.view.channel_members import Sets, axis_entries, spindle_entries
@@ -127,7 +127,7 @@ def corrected_resolution(parameters: ParameterSet) -> Iterator[Notice]:
     for gear in parameters.used_indexes("getriebe"):
         for number, warning in CORRECTED.items():
             if parameters.number(number, gear) == 0:
-                text, values = "value 0 is corrected to 1", (("corrected", 1.0, ""),)
+                text, values = "value 0 is corrected to 1", (("corrected", 1.0, OWN_UNIT),)
                 yield notice(parameters, number, (gear,), text, error_id=warning, values=values)
 
 

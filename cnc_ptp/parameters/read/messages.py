@@ -9,6 +9,10 @@ GENERAL = 26120
 """Number of notices without a number of their own."""
 
 
+OWN_UNIT = "="
+"""In place of the unit of a value: that of the parameter."""
+
+
 class Notice(NamedTuple):
     """A value that is corrected, or has an effect that its author may not expect: one line for the log.
 
@@ -45,6 +49,8 @@ def notice(
     """The notice about a parameter; `error_id` is the vendor's number if there is one."""
     declaration = parameters.catalogue.by_id[number]
     value = parameters.number(number, *indexes) if declaration.type in ("int", "float") else None
-    own = () if value is None else ((number, float(value), declaration.unit_for(parameters.axis_type or "T")),)
+    unit = declaration.unit_for(parameters.axis_type or "T")
+    own = () if value is None else ((number, float(value), unit),)
+    values = tuple((name, amount, unit if of == OWN_UNIT else of) for name, amount, of in values)
     subject = f"{number} {declaration.list_style_name(indexes)} of /{parameters.node}"
     return Notice(parameters.where(number, *indexes), subject, text, error_id, (*own, *values))
