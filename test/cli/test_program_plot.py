@@ -167,7 +167,7 @@ def test_override_dialect_and_first_colour(folder: Path) -> None:
             ["G01 X10 F1000"],
             ["--override", "500"],
             2,
-            "P-ERR-22006 --override 500 % is above 120 % (P-CHAN-00056); nothing was drawn",
+            "P-ERR-22006 --override 500 % is above 150 % (P-CHAN-00056); nothing was drawn",
         ),
         (["G04 0.1"], [], 2, "P-ERR-26011 program {}: does not move two axes along a path; nothing was drawn"),
         (["G01 X10 F1000", "#ERROR [ID=455 RC=2]"], [], 1, "error: P-ERR-22029 "),

@@ -444,15 +444,15 @@ def test_each_cycle_of_delay_lowers_the_limit() -> None:
         (
             "vorsteuer: {velocity_delay_time: 6000}",
             70349,
-            (("P-AXIS-00389", 6000.0, "µs"), ("limit", 6000.0, "µs")),
+            (("P-AXIS-00389", 6000.0, "µs"), ("limit", 6000.0, "µs"), ("corrected", 0.0, "µs")),
         ),
         (
             "vorsteuer: {acceleration_delay_time: 7000}",
             70348,
-            (("P-AXIS-00390", 7000.0, "µs"), ("limit", 6000.0, "µs")),
+            (("P-AXIS-00390", 7000.0, "µs"), ("limit", 6000.0, "µs"), ("corrected", 0.0, "µs")),
         ),
         ("antr: {torque_scale_denom: 0}", 110465, (("P-AXIS-00326", 0.0, ""),)),
-        ("vorsteuer: {jerk_fact_denom: 0}", 110473, (("P-AXIS-00338", 0.0, ""),)),
+        ("vorsteuer: {jerk_fact_denom: 0}", 110473, (("P-AXIS-00338", 0.0, ""), ("corrected", 100.0, ""))),
         ("vorsteuer: {vs_v_faktor: 6, vs_v_nenner: 5}", 26120, (("P-AXIS-00228", 6.0, ""),)),
     ],
 )

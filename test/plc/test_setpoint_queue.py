@@ -24,7 +24,9 @@ def row(cycle: int, position: float = 0.0, direction: int = 1) -> SetpointRow:
 
 
 def new_queue() -> SetpointQueue:
-    return SetpointQueue(cycle_time=CYCLE_TIME, warn=lambda cycle, number, text: WARNINGS.append((cycle, number, text)))
+    return SetpointQueue(
+        cycle_time=CYCLE_TIME, warn=lambda cycle, number, text, _values: WARNINGS.append((cycle, number, text))
+    )
 
 
 def rows_of(commands: Sequence[Command], axis: str = "x") -> list[SetpointRow]:
