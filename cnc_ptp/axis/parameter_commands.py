@@ -88,8 +88,8 @@ class ParameterCommands:
         low, high = view.soft_limit_negative, view.soft_limit_positive
         if axis.checks.referenced and not low <= position <= high:
             where = f"the axis stands at {position:g} {axis.unit}, outside {low:g} to {high:g} {axis.unit}"
-            what = f"{number} ({change.declaration.name})"
-            axis.refuse(WRITE, BEYOND_LIMIT, f"{what}: {where}", parameter=number, position=position, low=low, high=high)
+            reason = f"{number} ({change.declaration.name}): {where}"
+            axis.refuse(WRITE, BEYOND_LIMIT, reason, parameter=number, position=position, low=low, high=high)
 
     def _take(self, change: Change, view: AxisParameters) -> None:
         axis, loop = self._axis, self._loop
