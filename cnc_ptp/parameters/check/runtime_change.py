@@ -11,6 +11,7 @@ from cnc_ptp.parameters.check.control_notices import delays, denominators
 from cnc_ptp.parameters.check.machine_checks import NODE_CHECKS
 from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.declare.declarations import Declaration, ParameterValue, dotted
+from cnc_ptp.parameters.errors import AT_RUN_TIME
 from cnc_ptp.parameters.read.messages import Notice
 from cnc_ptp.parameters.read.parameter_set import Given, Parameter, ParameterSet
 from cnc_ptp.parameters.read.sections import checked_entry
@@ -52,8 +53,8 @@ def changed(own: ParameterSet, name: str, wanted: Value) -> Change:
     have either, 110641 for P-COMP-00062.
     """
     declaration, indexes, value = possible_change(own, name, wanted)
-    ros_name, place = declaration.ros_name(indexes), own.where(declaration.id, *indexes)
-    new = replace(own, given={**own.given, ros_name: Given(value, place)})
+    ros_name = declaration.ros_name(indexes)
+    new = replace(own, given={**own.given, ros_name: Given(value, AT_RUN_TIME)})
     for check in NODE_CHECKS[own.kind]:
         for problem in check(new):
             raise CncError(BAD_PARAMETER_VALUE, problem.text)
