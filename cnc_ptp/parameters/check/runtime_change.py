@@ -121,12 +121,16 @@ def start_refusal(parameters: ParameterSet, ros_name: str, wanted: Value) -> str
     return ""
 
 
-def change_refusal(parameters: ParameterSet, ros_name: str, wanted: object) -> CncError | None:
-    """The error 110641 for a change of P-COMP-00062; None for all others."""
-    declaration = parameters.catalogue.by_id[POINTS]
-    if ros_name != declaration.ros_name(()) or not declaration.belongs_to(parameters.kind):
-        return None
-    name, value = declaration.list_style_name(()), parameters.value(POINTS)
-    text = f"{name} = {value} ({POINTS}) cannot be changed to {wanted} after start-up"
+def change_refusal(parameters: ParameterSet, ros_name: str, wanted: Value) -> CncError | None:
+    """Why ROS cannot give a parameter another value: 23095, 23096, 110641; None if the unit may be asked."""
+    where, fixed = f"{parameters.kind} {parameters.node}", parameters.catalogue.by_id[POINTS]
     effect = "nothing was changed, set it in the machine file and start again"
-    return CncError(MEMORY_IS_FIXED, f"{parameters.kind} {parameters.node}: {text}; {effect}")
+    if ros_name == fixed.ros_name(()) and fixed.belongs_to(parameters.kind):
+        name, value = fixed.list_style_name(()), parameters.value(POINTS)
+        text = f"{name} = {value} ({POINTS}) cannot be changed to {wanted} after start-up"
+        return CncError(MEMORY_IS_FIXED, f"{where}: {text}; {effect}")
+    try:
+        possible_change(parameters, ros_name, wanted)
+    except CncError as error:
+        return CncError(error.number, f"{where}: {error.reason}; nothing was changed")
+    return None

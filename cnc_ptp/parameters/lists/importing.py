@@ -25,7 +25,6 @@ from cnc_ptp.parameters.loader import load_machine
 from cnc_ptp.parameters.read.machine_sections import read_parameters
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 
-
 MACHINE_FILE = "machine.yaml"
 """As the text of the machine is called while it is checked."""
 
