@@ -47,6 +47,10 @@ class Place(NamedTuple):
         return f"{self.file}:{self.line}:{self.column}"
 
 
+AT_RUN_TIME = Place("", 0, 0)
+"""Of a value that a command has written."""
+
+
 class Problem(NamedTuple):
     """One thing that is wrong, and where."""
 

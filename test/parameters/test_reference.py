@@ -59,6 +59,10 @@ def test_one_parameter_by_id_or_name(name: str) -> None:
     assert describe(name) == KV
 
 
+def test_zeros_of_an_id_may_be_left_out() -> None:
+    assert describe("p-axis-99") == describe("P-AXIS-099") == describe("P-AXIS-00099")
+
+
 def test_a_last_part_that_several_have() -> None:
     headlines = [block.splitlines()[0] for block in describe("a_max").split("\n\n")]
     assert headlines == [
