@@ -236,6 +236,16 @@ def test_files_that_the_start_up_list_names() -> None:
     ]
 
 
+@pytest.mark.parametrize("line", ["zahl_mds", "zahl_mds # axes"])
+def test_a_number_of_files_without_a_value(line: str) -> None:
+    startup = f"achs_mds[0] achs_mds_x.lis\nachs_mds[1] achs_mds_s.lis\n{line}\n"
+    text = "zahl_mds: it has no value; write one behind the name, or delete the line"
+    column = len("zahl_mds") + 1 + (" #" in line)
+    assert small_refusal("hochlauf.lis", startup) == (
+        f"P-ERR-25043 f/hochlauf.lis:3:{column}: {text}, in '{line}'{END}"
+    )
+
+
 def test_names_of_nodes_in_the_start_up_list() -> None:
     said = small_refusal("hochlauf.lis", "axes x, y\nchannels plc\nspindles\n")
     assert said.splitlines() == [

@@ -20,7 +20,7 @@ from cnc_ptp.parameters.lists.names import BadIndex, Found, UnknownName, resolve
 from cnc_ptp.parameters.lists.problems import ListError, ListProblem
 from cnc_ptp.parameters.lists.report import CORRECTED, DEFAULTED, NOTICE, READ, UNKNOWN, ListCount, Report
 from cnc_ptp.parameters.lists.units import UNIT_LISTS, Unit, Units, find_units, number_in, place_of
-from cnc_ptp.parameters.lists.values import BadLine, said_otherwise, split_value, to_yaml
+from cnc_ptp.parameters.lists.values import NO_VALUE, BadLine, said_otherwise, split_value, to_yaml
 from cnc_ptp.parameters.loader import load_machine
 from cnc_ptp.parameters.read.machine_sections import read_parameters
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
@@ -130,9 +130,11 @@ class Writer:
 
     def compare(self, line: Line, number: int, text: str) -> None:
         """A notice about a number that the machine file has from elsewhere, if the list gives another one."""
-        written = number_in({line.name: line.rest.split()[0] if line.rest.split() else ""}, line.name)
-        if written != number:
-            self.report.add(NOTICE, line.value_place, f"{line.name} is {line.rest.split()[0]}, but {text}")
+        written, _, _ = line.rest.partition("#")[0].strip().partition(" ")
+        if not written:
+            self.problem(errors.LIST_LINE, line, f"{line.name}: {NO_VALUE}")
+        elif number_in({line.name: written}, line.name) != number:
+            self.report.add(NOTICE, line.value_place, f"{line.name} is {written}, but {text}")
 
     def frame(self, line: Line) -> None:
         self.report.add(READ, line.place, " ".join(line.text.split()))
