@@ -9,6 +9,7 @@ import pytest
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import load_machine
+from cnc_ptp.parameters.declare import where
 from cnc_ptp.parameters.declare.declarations import catalogue
 from cnc_ptp.parameters.declare.reference import change_text, entry_text, find, reference_markdown
 
@@ -40,6 +41,19 @@ def test_module_prints_the_document() -> None:
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONIOENCODING": "utf-8"}
     output = subprocess.run(command, check=True, capture_output=True, env=environment).stdout
     assert output.decode("utf-8") == reference_markdown()
+
+
+def test_readers_do_not_depend_on_the_folder_of_the_checkout(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
+) -> None:
+    expected = where.readers()
+    checkout = tmp_path / "check" / "declare" / "view"
+    checkout.mkdir(parents=True)
+    (checkout / "cnc_ptp").symlink_to(where.PACKAGE)
+    monkeypatch.setattr(where, "PACKAGE", checkout / "cnc_ptp")
+    where.readers.cache_clear()
+    request.addfinalizer(where.readers.cache_clear)
+    assert where.readers() == expected
 
 
 @pytest.mark.parametrize(
