@@ -3,13 +3,14 @@
 `mcap.writer.Writer` takes one message a call (4 µs). Here a call takes any number of messages of equal size, as rows of
 bytes with room for the record head in front; all other records are written by the library's record classes. Records and
 their order follow the specification at mcap.dev/spec: in a chunk the messages are topic by topic, its message indexes
-give their order in time.
+give their order in time. Chunks of several topics may be of the same time.
 """
 
 from __future__ import annotations
 
 import struct
 import zlib
+from collections import deque
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -79,8 +80,8 @@ class Contents:
 class McapFile:
     """An MCAP file of the ROS 2 profile being written.
 
-    A closed chunk is compressed by a thread of its own (outside the interpreter lock) while the next one fills; then it
-    is written and handed to the operating system immediately. All methods raise CncError 26007 once the file could not
+    Closed chunks are compressed by a thread of its own (outside the interpreter lock) while the next ones fill; then
+    they are written and handed to the operating system immediately. All methods raise CncError 26007 once the file could not
     be written; the chunks before that moment stay readable.
     """
 
@@ -98,7 +99,7 @@ class McapFile:
         self._attachment_indexes = contents.attachment_indexes
         self._metadata_indexes = contents.metadata_indexes
         self._chunk = _OpenChunk()
-        self._closed_chunk: tuple[_OpenChunk, Future[tuple[bytes, int]]] | None = None
+        self._closed_chunks: deque[tuple[_OpenChunk, Future[tuple[bytes, int]]]] = deque()
         self._worker = ThreadPoolExecutor(max_workers=1, thread_name_prefix="recording")
         self._failure: CncError | None = None
         try:
@@ -117,7 +118,7 @@ class McapFile:
             self._flush()
 
     def attachment(self, name: str, media_type: str, data: bytes, log_time: int) -> None:
-        self.finish_chunk()
+        self.finish_chunks()
         start = self._offset
         self._record(Attachment(create_time=0, log_time=log_time, name=name, media_type=media_type, data=data))
         self._attachment_indexes.append(
@@ -127,7 +128,7 @@ class McapFile:
         self._flush()
 
     def metadata(self, name: str, values: dict[str, str]) -> None:
-        self.finish_chunk()
+        self.finish_chunks()
         start = self._offset
         self._record(Metadata(name, values))
         self._metadata_indexes.append(MetadataIndex(start, self._offset - start, name))
@@ -172,24 +173,27 @@ class McapFile:
         self._chunk.add_messages(channel_id, rows, times)
 
     def close_chunk(self) -> None:
-        """Closes the chunk being filled and writes the one before; an empty chunk is left open."""
-        self.finish_chunk()
+        """Closes the chunk being filled, which is compressed now; an empty chunk is left open."""
         chunk = self._chunk
         if chunk.message_count:
             self._chunk = _OpenChunk()
-            self._closed_chunk = chunk, self._worker.submit(self._compress, chunk)
+            self._closed_chunks.append((chunk, self._worker.submit(self._compress, chunk)))
 
     @property
-    def chunk_ready(self) -> bool:
-        """A closed chunk has been compressed and waits to be written."""
-        return self._closed_chunk is not None and self._closed_chunk[1].done()
+    def chunks_ready(self) -> bool:
+        """All closed chunks have been compressed and wait to be written."""
+        return bool(self._closed_chunks) and self._closed_chunks[-1][1].done()
 
-    def finish_chunk(self) -> None:
-        """Returns when the last closed chunk has been handed to the operating system."""
-        if self._closed_chunk is None:
-            return
-        (chunk, compression), self._closed_chunk = self._closed_chunk, None
-        compressed, crc = compression.result()
+    def finish_chunks(self) -> None:
+        """Returns when all closed chunks have been handed to the operating system."""
+        try:
+            while self._closed_chunks:
+                chunk, compression = self._closed_chunks.popleft()
+                self._write_chunk(chunk, *compression.result())
+        finally:
+            self._closed_chunks.clear()  # what cannot be written is lost
+
+    def _write_chunk(self, chunk: _OpenChunk, compressed: bytes, crc: int) -> None:
         first, last = chunk.time_range()
         start = self._offset
         self._record(Chunk("zstd", compressed, last, first, crc, chunk.size))
@@ -218,7 +222,7 @@ class McapFile:
         """Writes the last chunk and the summary, closes the file, and writes the metadata of rosbag2 (bag)."""
         try:
             self.close_chunk()
-            self.finish_chunk()
+            self.finish_chunks()
             information = bag_information(self.path.name, self.statistics, self._channels, self._schemas)
             self.metadata(RECORD, {"serialized_metadata": metadata_text(information)})
             self._record(DataEnd(self._crc))
