@@ -203,7 +203,7 @@ def test_file_that_is_no_mcap(scratch, content, shown):
     )
 
 
-ADVICE = "; nothing was read, take an intact copy of the file or save what is whole with 'mcap recover'"
+ADVICE = "; nothing was read, take an intact copy of the file or save what is whole with 'cnc_ptp recover'"
 
 
 def records(data):
