@@ -331,6 +331,19 @@ def export_command(**options: Any) -> None:
     sys.exit(export(**options))
 
 
+@main.command("recover")
+@RECORDING
+@click.option("-o", "--output", required=True, type=click.Path(dir_okay=False), help="MCAP file to write.")
+def recover_command(**options: Any) -> None:
+    """Save what is whole of a damaged or cut recording in a new file.
+
+    Says what is lost. The recording itself stays as it is.
+    """
+    from cnc_ptp.commands.look.recover import recover_file
+
+    sys.exit(recover_file(**options))
+
+
 def program_options(function: Callable[..., Any]) -> Callable[..., Any]:
     """Options of a plot that are for an NC program alone."""
     for option in (

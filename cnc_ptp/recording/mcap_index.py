@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import struct
 from collections.abc import Collection, Iterator, Mapping
+from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
@@ -99,7 +100,7 @@ class McapIndex(RecordReader):
         if (sizes < HEAD_SIZE).any() or (sizes > len(data) - offsets.astype(np.uint64)).any():
             raise self.corrupt(place.offset, "a message of the chunk is longer than the chunk")
         bounds = [0, *(np.flatnonzero(np.diff(sizes)) + 1).tolist(), len(sizes)]
-        for first, end in zip(bounds[:-1], bounds[1:], strict=True):
+        for first, end in pairwise(bounds):
             yield MessageRun(channel, _rows(data, offsets[first:end], int(sizes[first])))
 
     def _message_offsets(self, offset: int) -> npt.NDArray[np.int64]:
@@ -152,7 +153,7 @@ class McapIndex(RecordReader):
         return ChunkPlace(first, last, offset, length, indexes)
 
     def _scan(self) -> None:
-        """All records that are whole, of a file without a list of its chunks, which are uncompressed for their channels."""
+        """All whole records of a file without a list of its chunks, which are uncompressed for their channels."""
         self.counts, self.metadata = {}, []
         for record in self._records(len(MCAP0_MAGIC)):
             self._take_name(record)

@@ -21,10 +21,10 @@ import yaml
 from cnc_ptp import yaml_text
 from cnc_ptp.errors import CncError
 from cnc_ptp.recording.bag import FILE, INFORMATION
+from cnc_ptp.recording.mcap_file import METADATA
 from cnc_ptp.recording.mcap_index import ChunkPlace, McapIndex
 from cnc_ptp.recording.message_fields import Column, MessageFields
-from cnc_ptp.recording.selection import NOT_RECORDED, nearest
-from cnc_ptp.recording.writer import METADATA
+from cnc_ptp.recording.selection import NOT_RECORDED, asked_time, nearest
 from cnc_ptp.wire.schemas import full_name
 
 if TYPE_CHECKING:
@@ -190,9 +190,7 @@ class OpenRecording:
     def _require_pieces(self, topic: str, start: float | None, end: float | None) -> None:
         if not self._pieces(topic, *self._bounds(start, end)):
             first, last = ((time - self.start_ns) * 1e-9 for time in self._span(topic))
-            asked = (
-                f"{'the start' if start is None else f'{start:g} s'} to {'the end' if end is None else f'{end:g} s'}"
-            )
+            asked = asked_time(start, end)
             raise self._missing(f"holds nothing of {topic} from {asked}, it covers {first:g} s to {last:g} s")
 
     def _span(self, topic: str) -> tuple[int, int]:

@@ -19,7 +19,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import ChannelBlock, CommandRecord, CycleBlock, CycleTick, Event, PlcBlock
 from cnc_ptp.recording.bag import QOS, TYPE_HASH
 from cnc_ptp.recording.blocks import StateKind, block_rows, fill_states, kind_of, kinds_in
-from cnc_ptp.recording.mcap_file import HEAD_SIZE, McapFile
+from cnc_ptp.recording.mcap_file import HEAD_SIZE, METADATA, McapFile
 from cnc_ptp.recording.qos import offered, profiles_text
 from cnc_ptp.wire.block_codec import codec_of, head_of, with_plain_header
 from cnc_ptp.wire.layout import Bytes, Layout, encode, repeat
@@ -31,9 +31,6 @@ TWO_TYPES = 26008
 CLOSED = 26009
 ROOM = bytes(HEAD_SIZE)  # for the record head in front of each message
 MACHINE_FILE = "machine.yaml"
-METADATA = "cnc_ptp"
-MISSING = "missing"
-"""Key of the metadata: what a recording that was closed for a dead recorder does not have."""
 NO_NOTES: Mapping[str, str] = {}
 BEFORE_ALL = -1  # end of the chunk before the first block
 
@@ -329,6 +326,18 @@ class Recording:
             encoder, collected = runs.pop()
             for rows, times in encoder.messages(collected, self.stamps):
                 self._file.messages(topic.channel_id, rows, times)
+
+
+class NoRecording:
+    """Takes what a recording takes, and keeps nothing: after a disk was full the run goes on."""
+
+    def __init__(self, stamps: Stamps) -> None:
+        self.stamps = stamps
+
+    def take(self, *_arguments: Any, **_options: Any) -> None:
+        """See Recording."""
+
+    block = encoded_block = tick = event = command = raw = attachment = flush_if_due = flush = close = take
 
 
 def offer(type_name: str) -> dict[str, str]:
