@@ -101,7 +101,7 @@ class RecorderNode(PollingNode):
         self._handover = handover
         self._needed = [] if handover else [*self._subscribe_to_blocks()]
         if handover:
-            handover.on_tick(self._guarded(self._on_tick), self._look)
+            handover.on_tick(self._guarded(self._on_tick), self._guarded(self._look))
             for unit in self._units:
                 handover.on_block(unit, self._guarded(partial(self._take_block, unit)))
         self.create_subscription(msg.Event, EVENT, self._guarded(self._on_event), EVENTS)

@@ -68,8 +68,9 @@ def write_parquet(output: Path, parts: Parts, topic: str) -> int:
 def write_npz(output: Path, parts: Parts, _topic: str) -> int:
     everything = [*parts]
     columns = {name: joined([part[name] for part in everything]) for name in everything[0]} if everything else {}
+    contents: dict[str, Any] = {name: _without_objects(column) for name, column in columns.items()}
     with output.open("wb") as stream:
-        np.savez_compressed(stream, **{name: _without_objects(column) for name, column in columns.items()})
+        np.savez_compressed(stream, allow_pickle=False, **contents)
     return len(columns.get(TIME, ()))
 
 

@@ -195,4 +195,5 @@ def _rows(data: Bytes, offsets: npt.NDArray[np.int64], size: int) -> Bytes:
     first, count = int(offsets[0]), len(offsets)
     if (np.diff(offsets) == size).all():
         return data[first : first + count * size].reshape(count, size)
-    return data[offsets[:, None] + np.arange(size)]
+    rows: Bytes = data[offsets[:, None] + np.arange(size)]
+    return rows

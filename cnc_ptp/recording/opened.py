@@ -9,6 +9,7 @@ import os
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, replace
 from importlib import import_module
 from itertools import chain
 from pathlib import Path
@@ -47,7 +48,8 @@ Result = TypeVar("Result")
 Columns = dict[str, Column]
 
 
-class Topic(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Topic:
     """A topic of a recording; `fields` are the names of its columns."""
 
     name: str
@@ -163,7 +165,7 @@ class OpenRecording:
         count = file.counts.get(channel_id, 0)
         known = self.topics.get(channel.topic)
         if known is not None:
-            self.topics[channel.topic] = known._replace(count=known.count + count)
+            self.topics[channel.topic] = replace(known, count=known.count + count)
         elif count:
             reader = self._readers[channel.topic] = MessageFields(schema)
             self.topics[channel.topic] = Topic(channel.topic, full_name(schema.name), count, reader.names)
