@@ -337,7 +337,7 @@ def export_command(**options: Any) -> None:
 def recover_command(**options: Any) -> None:
     """Save what is whole of a damaged or cut recording in a new file.
 
-    Says what is lost. The recording itself stays as it is.
+    Says what is lost. The recording itself is unchanged.
     """
     from cnc_ptp.commands.look.recover import recover_file
 

@@ -147,7 +147,7 @@ class RecorderNode(PollingNode):
         with contextlib.suppress(CncError):
             recording.close()
         cycle = max(0, self._last_tick)
-        text = f"recorder: {error.reason}; the run goes on without it, about cycle {cycle} and later are missing"
+        text = f"recorder: {error.reason}; the run continues without it, about cycle {cycle} and later are missing"
         event = Event(cycle, RECORDER, Severity.ERROR, ENDED_EARLY, text)
         stamp = convert.time_message(recording.stamps.at(cycle))
         self._event_publisher.publish(convert.event_to_message(event, stamp))

@@ -19,7 +19,7 @@ from cnc_ptp.recording.writer import Recording
 class OfflineRun:
     """The run of an offline machine, with a recording if one is wanted; it is closed at the end of a `with` block.
 
-    Raises CncError 26007 where the recording cannot be begun. When it cannot be continued the run goes on without it;
+    Raises CncError 26007 where the recording cannot be begun. When it cannot be continued the run continues without it;
     `failure` says so.
     """
 

@@ -329,7 +329,7 @@ class Recording:
 
 
 class NoRecording:
-    """Takes what a recording takes, and keeps nothing: after a disk was full the run goes on."""
+    """Takes what a recording takes, and keeps nothing: after a disk was full the run continues."""
 
     def __init__(self, stamps: Stamps) -> None:
         self.stamps = stamps

@@ -1,12 +1,15 @@
 """`cnc_ptp export`: a topic of a recording as a file."""
 
 import os
+import platform
+from importlib.metadata import version
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
 from recording_support import smooth_run
 
+import cnc_ptp.recording
 from cnc_ptp import cli
 
 
@@ -65,3 +68,12 @@ def test_disk_that_is_full_leaves_no_file(recording, tmp_path, monkeypatch):
     assert result.exit_code == 2
     assert "No space left on device; the recording is unchanged" in " ".join(result.output.split())
     assert sorted(path.name for path in tmp_path.iterdir()) == ["metadata.yaml", "run.mcap"]
+
+
+def test_a_recording_says_what_the_run_was_computed_by(tmp_path):
+    run = tmp_path / "run.mcap"
+    assert call("simulate", "config/ptp.yaml", "--duration", 0.05, "--record", run).exit_code == 0
+    with cnc_ptp.recording.open(run) as recording:
+        found = recording.metadata
+    assert (found["version"], found["kernel"]) == (version("cnc_ptp"), cnc_ptp.KERNEL.kind)
+    assert (found["python"], found["host"]) == (platform.python_version(), platform.node())

@@ -81,7 +81,7 @@ def test_full_disk_in_a_composed_run(one_axis):
 
 @pytest.mark.parametrize("composed", [(), ("--composed",)])
 def test_disk_that_gets_full_on_the_way(one_axis, tmp_path, composed):
-    """The run goes on to its end; the event says from where on the recording has nothing; the file opens."""
+    """The run continues to its end; the event says from where on the recording has nothing; the file opens."""
     recording = tmp_path / "run.mcap"
     options = ("--scenario", tmp_path / "move.yaml", "--duration", "4", *composed, "--record", recording)
     done = subprocess.run(
@@ -94,7 +94,7 @@ def test_disk_that_gets_full_on_the_way(one_axis, tmp_path, composed):
     )
     assert "machine time 4.0" in done.stdout, done.stdout + done.stderr
     found = re.search(
-        rf"P-ERR-26015 recorder: recording {recording}: cannot be written at offset \d+: File too large; the run goes on "
+        rf"P-ERR-26015 recorder: recording {recording}: cannot be written at offset \d+: File too large; the run continues "
         r"without it, about cycle (\d+) and later are missing",
         done.stderr,
     )
