@@ -22,6 +22,7 @@ class Argument:
 
     `positive`: only a number above 0 makes sense, so that 0 in a service means that it is left out.
     `lenient`: the command is carried out with any value and reports the one it uses.
+    `range`: what the field of its service holds, of an integer.
     """
 
     kind: str
@@ -29,12 +30,16 @@ class Argument:
     choices: tuple[str, ...] = ()
     positive: bool = False
     lenient: bool = False
+    range: tuple[int, int] = (-(2**63), 2**63 - 1)
 
 
 Arguments = Mapping[str, Argument]
 NUMBER = Argument("number")
 OPTIONAL_NUMBER = Argument("number", required=False)
 INTEGER = Argument("integer")
+UINT8 = Argument("integer", range=(0, 2**8 - 1))
+UINT32 = Argument("integer", range=(0, 2**32 - 1))
+UINT64 = Argument("integer", range=(0, 2**64 - 1))
 SWITCH = Argument("switch")
 TEXT = Argument("text")
 OPTIONAL_TEXT = Argument("text", required=False)
@@ -89,7 +94,7 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "halt_superimposed": {},
         "set_position": {"position": NUMBER, "relative": OPTIONAL_SWITCH},
         "set_override": {"percent": NUMBER},
-        "set_override_type": {"type": INTEGER},
+        "set_override_type": {"type": UINT8},
         "stop": {},
         "hold_stop": {"enabled": SWITCH},
         "halt": {},
@@ -210,17 +215,17 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "block_skip": {"enabled": SWITCH, "level": OPTIONAL_COUNT},
         "reset": {},
         "mdi": {"text": TEXT, "files": Argument("files", required=False)},
-        "acknowledge": {"id": INTEGER},
+        "acknowledge": {"id": UINT64},
         "measuring_event": {},
-        "set_zero_offset": {"index": INTEGER, "axis": TEXT, "value": NUMBER},
-        "teach_zero_offset": {"index": INTEGER, "axis": OPTIONAL_TEXT, "value": OPTIONAL_NUMBER},
-        "set_clamp_position": {"index": INTEGER},
+        "set_zero_offset": {"index": UINT32, "axis": TEXT, "value": NUMBER},
+        "teach_zero_offset": {"index": UINT32, "axis": OPTIONAL_TEXT, "value": OPTIONAL_NUMBER},
+        "set_clamp_position": {"index": UINT32},
         "overlay": OVERLAY,
         "set_emergency_stop": {"enabled": SWITCH},
         "upstream_lost": SOURCE,
     },
     "plc": {
-        "acknowledge": {"id": INTEGER},
+        "acknowledge": {"id": UINT64},
         "auto_acknowledge": {"enabled": SWITCH},
         "set_life_sign": {"enabled": SWITCH},
         "set_input": {"name": TEXT, "value": NUMBER},
@@ -373,8 +378,15 @@ def check_arguments(
 
 
 def check_sendable(where: str, specification: Arguments, arguments: Mapping[str, Any]) -> None:
-    """A service takes a 0 that makes no sense for left out, and texts of UTF-8 only. Raises CncError 22001."""
+    """Raises CncError 22001 for what a service would take for something else.
+
+    A 0 that makes no sense is left out there, an integer beyond its field wraps around, texts are of UTF-8 only.
+    """
     for name, value in arguments.items():
+        low, high = specification[name].range
+        if specification[name].kind == "integer" and not low <= value <= high:
+            reason = f"{name} = {value} is not within {low} ... {high}"
+            raise CncError(BAD_ARGUMENT, reason, "nothing was sent", where=where)
         if specification[name].positive and value == 0.0:
             raise CncError(BAD_ARGUMENT, f"{name} = 0 must be greater than 0", "nothing was sent", where=where)
         if isinstance(value, str) and value != value.encode(errors="ignore").decode():

@@ -98,6 +98,7 @@ def story(m: Machine, folder: Path) -> list[object]:
     seen.append(refusal(lambda: m.y.couple("x", 0.0)))
     seen.append(refusal(lambda: m.channel.load(str(folder / "none.nc")))[0])
     seen.append(refusal(lambda: m.s.set_limits()))
+    seen.append(refusal(lambda: m.plc.acknowledge(-1)))
     return seen
 
 
@@ -116,6 +117,7 @@ EXPECTED = [
     (23043, "axis y: couple refused: factor = 0 must be different from 0; nothing was changed", {"argument": "factor", "value": 0.0}),
     26110,
     (22001, "spindle s: set_limits refused: nothing is given; reset_limits takes the limits away; nothing was changed", {}),
+    (22001, "plc plc: acknowledge refused: id = -1 is not within 0 ... 18446744073709551615; nothing was sent", {}),
 ]  # fmt: skip
 
 
