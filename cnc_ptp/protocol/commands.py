@@ -65,9 +65,10 @@ COUPLING: Arguments = {
     "master": TEXT,
     "above": Argument("rows", required=False),
     "master_stands": OPTIONAL_SWITCH,
+    "master_start": OPTIONAL_TEXT,
     "master_lost": OPTIONAL_SWITCH,
 }
-"""A master, and what the PLC fills in: the master's masters, whether it is at a standstill, whether it is lost."""
+"""A master, and what the PLC fills in: its masters, whether it stands, what may start it in this block, is it lost."""
 
 OVERLAY: Arguments = {
     "control_unit": TEXT,
@@ -291,7 +292,7 @@ THROUGH_PLC = COUPLINGS | {"change_cam", "external_setpoints"}
 """Commands of axes that go through the PLC: it sees all axes, and sends setpoints with the blocks of their cycles."""
 NEEDS_SOMETHING = {"set_limits": "reset_limits takes the limits away"}
 """Commands that would release something when nothing is given, and how to do so explicitly."""
-OF_PLC = frozenset({"above", "master_stands", "master_lost"})
+OF_PLC = frozenset({"above", "master_stands", "master_start", "master_lost"})
 """Arguments of couplings that the PLC fills in; only a refusal can come of them, so that they are not recorded."""
 OF_CHANNELS = frozenset({"own", "homes", "owner", "by_path"})
 """Arguments that only channels give; neither services nor scenarios have them."""
