@@ -196,7 +196,7 @@ BLOCKS_EXPECTED = [
     (True, 22001, "axis x: move_absolute refused: target = nan is not finite; nothing was changed"),
     (True, 22001, "axis x: move_absolute refused: buffer_mode = 'later' is not aborting, buffered, blending_low, blending_previous, blending_next or blending_high; nothing was changed"),
     "command_aborted", "done", 1,
-    500, 0, (22169, "axis /x has no parameter 'P-AXIS-99999'; nothing was read"),
+    500, 0, (22169, "axis x has no parameter 'P-AXIS-99999'; nothing was read"),
 ]  # fmt: skip
 COMPARED = {
     "x": ("set_position", "set_velocity", "set_acceleration", "set_jerk"),
