@@ -22,7 +22,7 @@ class Argument:
 
     `positive`: only a number above 0 makes sense, so that 0 in a service means that it is left out.
     `lenient`: the command is carried out with any value and reports the one it uses.
-    `range`: what the field of its service holds, of an integer.
+    `field`: type of an integer in its service.
     """
 
     kind: str
@@ -30,16 +30,16 @@ class Argument:
     choices: tuple[str, ...] = ()
     positive: bool = False
     lenient: bool = False
-    range: tuple[int, int] = (-(2**63), 2**63 - 1)
+    field: str = "int64"
 
 
 Arguments = Mapping[str, Argument]
 NUMBER = Argument("number")
 OPTIONAL_NUMBER = Argument("number", required=False)
 INTEGER = Argument("integer")
-UINT8 = Argument("integer", range=(0, 2**8 - 1))
-UINT32 = Argument("integer", range=(0, 2**32 - 1))
-UINT64 = Argument("integer", range=(0, 2**64 - 1))
+UINT8 = Argument("integer", field="uint8")
+UINT32 = Argument("integer", field="uint32")
+UINT64 = Argument("integer", field="uint64")
 SWITCH = Argument("switch")
 TEXT = Argument("text")
 OPTIONAL_TEXT = Argument("text", required=False)
@@ -313,6 +313,9 @@ TYPES = {
     "source": str,
 }
 
+INTEGER_RANGES = {"int64": (-(2**63), 2**63 - 1)} | {f"uint{bits}": (0, 2**bits - 1) for bits in (8, 32, 64)}
+"""Type of a field -> least and largest integer that it holds."""
+
 TYPE_TEXTS = {"integer": "an integer", "rows": "a list of rows", "files": "texts by file name"}
 """What an argument must be, where its kind with an article is no English."""
 
@@ -384,10 +387,11 @@ def check_sendable(where: str, specification: Arguments, arguments: Mapping[str,
     A 0 that makes no sense is left out there, an integer beyond its field wraps around, texts are of UTF-8 only.
     """
     for name, value in arguments.items():
-        low, high = specification[name].range
-        if specification[name].kind == "integer" and not low <= value <= high:
-            reason = f"{name} = {value} is not within {low} ... {high}"
-            raise CncError(BAD_ARGUMENT, reason, "nothing was sent", where=where)
+        if specification[name].kind == "integer":
+            low, high = INTEGER_RANGES[specification[name].field]
+            if not low <= value <= high:
+                reason = f"{name} = {value} is not within {low} ... {high}"
+                raise CncError(BAD_ARGUMENT, reason, "nothing was sent", where=where)
         if specification[name].positive and value == 0.0:
             raise CncError(BAD_ARGUMENT, f"{name} = 0 must be greater than 0", "nothing was sent", where=where)
         if isinstance(value, str) and value != value.encode(errors="ignore").decode():

@@ -28,7 +28,7 @@ NOTHING_TO_STOP = 23073
 
 @dataclass(frozen=True, slots=True)
 class Note:
-    """A refused command, a message of a program or PLC, or a warning: an event, or of a command that was carried out."""
+    """A refused command, a message of a program or PLC, or a warning: an event, or of a command carried out."""
 
     number: int
     text: str

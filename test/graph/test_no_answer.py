@@ -20,7 +20,7 @@ from cnc_ptp.nodes.client.machine_client import PATIENCE, MachineClient, service
 from cnc_ptp.nodes.topics import REMEMBERED_BLOCKS
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import CycleTick
-from cnc_ptp.protocol.commands import COMMANDS
+from cnc_ptp.protocol.commands import COMMANDS, INTEGER_RANGES
 from cnc_ptp.wire.block_codec import encode_block
 from cnc_ptp.wire.stamps import Stamps
 
@@ -86,7 +86,8 @@ def test_integers_have_the_range_of_their_field(kind):
         for name, argument in COMMANDS[kind][command].items():
             if argument.kind == "integer" and name in fields:
                 limits = np.iinfo(fields[name])
-                assert argument.range == (limits.min, limits.max), (command, name)
+                assert argument.field == fields[name], (command, name)
+                assert INTEGER_RANGES[argument.field] == (limits.min, limits.max)
 
 
 def test_a_unit_without_blocks_has_no_data(client):
