@@ -130,11 +130,16 @@ class CouplingCommands:
         slave_scaling: float = 1.0,
         slave_offset: float | None = None,
         file: str = "",
-        **group: Any,
+        above: Sequence[str] = (),
+        master_stands: bool = True,
+        master_start: str = "",
+        master_lost: bool = False,
+        on_path: bool = False,
     ) -> str | None:
         """Slave position over master position from a table of points (master, slave)."""
         command = "couple_cam"
-        self._check(command, master, **group)
+        standstill: dict[str, Any] = {"master_stands": master_stands, "master_start": master_start}
+        self._check(command, master, above=above, master_lost=master_lost, on_path=on_path, **standstill)
         self._check_factor(command, slave_scaling, "slave_scaling")
         self._check_factor(command, master_scaling, "master_scaling")
         coupling = CamCoupling(

@@ -25,6 +25,11 @@ from cnc_ptp.wire.block_codec import encode_block
 from cnc_ptp.wire.stamps import Stamps
 
 
+@pytest.fixture(scope="module")
+def patient_clients():
+    """Here they are as impatient as those of users."""
+
+
 @pytest.fixture
 def client(monkeypatch):
     """It knows a machine that says nothing."""
