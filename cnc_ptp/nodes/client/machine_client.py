@@ -22,7 +22,7 @@ from cnc_ptp.machine.wiring import UNKNOWN_UNIT
 from cnc_ptp.nodes import process
 from cnc_ptp.nodes.bridge.coupling_services import PATIENCE as COUPLING_PATIENCE
 from cnc_ptp.nodes.client.latest_blocks import LatestBlocks
-from cnc_ptp.nodes.client.requests import check_integers, request_of
+from cnc_ptp.nodes.client.requests import request_of
 from cnc_ptp.nodes.polling_node import PollingNode
 from cnc_ptp.nodes.topics import COUPLING_SERVICES, SERIES_SERVICES, SERVICES
 from cnc_ptp.protocol.commands import COMMANDS, FILE_CONTENTS, UNKNOWN_COMMAND, Arguments
@@ -135,9 +135,8 @@ class MachineClient(PollingNode):
     # commands
 
     def ask(self, unit: str, command: str, arguments: Mapping[str, Any]) -> Any:
-        """The response to a command. Raises CncError 26136 when none comes in time, 22001 for too large an integer."""
+        """The response to a command. Raises CncError 26136 when none comes in time; `arguments`: check_sendable."""
         service = services_of(self.kinds[unit])[command]
-        check_integers(f"{self.kinds[unit]} {unit}: {command} refused", service, arguments)
         patience = COUPLING_PATIENCE + MARGIN if command in COUPLING_SERVICES else PATIENCE
         if (unit, command) not in self._askers:
             self._askers[unit, command] = self.create_client(service, f"{unit}/{command}")
