@@ -45,6 +45,7 @@ identify = _entry("identify")
 circle = _entry("circle")
 curve = _entry("curve")
 lists = _entry("lists")
+sweep = _entry("sweep")
 
 if __name__ == "__main__":
     main()
