@@ -1,4 +1,4 @@
-"""Goals: arithmetic over the columns of a run, `max(following_error.x)`; read by a white list, never executed as code."""
+"""Goals: arithmetic over the columns of a run, `max(following_error.x)`; read by a white list, never run as code."""
 
 from __future__ import annotations
 

@@ -85,8 +85,8 @@ def coordinates(results: Results) -> str:
     figure.update_xaxes(tickvals=[*range(len(labels))], ticktext=[wrapped(label) for label in labels], showgrid=False)
     figure.update_yaxes(visible=False, range=[-0.08, 1.08])
     note = f"Blue: the best for {results.goals[0].label}; red: the worst. Failed variants have no line."
-    body = f'<div class="scroll"><div style="min-width: {WIDTH * len(labels)}px">{plot_div(figure, "coordinates")}</div></div>'
-    return section("Parallel coordinates", body, note)
+    wide = f'<div style="min-width: {WIDTH * len(labels)}px">{plot_div(figure, "coordinates")}</div>'
+    return section("Parallel coordinates", f'<div class="scroll">{wide}</div>', note)
 
 
 class Column:

@@ -16,7 +16,7 @@ from cnc_ptp.sweep.results import Row, Variant
 from cnc_ptp.sweep.spread import Interval, Values
 from cnc_ptp.sweep.variation import Variation
 
-MOST_VARIANTS = 100_000
+MOST_VARIANTS = 10**5
 
 
 class Plan(Protocol):

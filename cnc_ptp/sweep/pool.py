@@ -1,4 +1,4 @@
-"""Variants on Dask: processes of this computer, or the workers of a scheduler elsewhere. The only file that knows Dask."""
+"""Variants on Dask: processes of this computer, or workers of a scheduler elsewhere. No other file knows Dask."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import logging
 import os
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import CancelledError
 from types import TracebackType
 from typing import Any
 
@@ -103,16 +104,15 @@ class Pool:
             done = self._distributed.wait([*running], timeout=GLANCE, return_when="FIRST_COMPLETED").done
         except (TimeoutError, self._distributed.TimeoutError):
             done = set()
-        lost = [future for future in running if future.status in ("cancelled", "lost")]
-        if lost or self._client.status not in ("running", "connecting"):
-            raise CncError(NO_SCHEDULER, "the scheduler is gone", KEPT)
+        except CancelledError:
+            raise CncError(NO_SCHEDULER, "the scheduler is gone", KEPT) from None
         return sorted(done, key=lambda future: str(future.key))
 
     def _killed(self, future: Any) -> bool:
         return isinstance(future.exception(), self._distributed.KilledWorker)
 
     def _row(self, future: Any) -> Row:
-        """Raises CncError 26186 where a worker cannot compute at all: rows have all that can be wrong with a variant."""
+        """Raises CncError 26186 where a worker cannot compute at all: rows have what is wrong with a variant."""
         if future.status == "error":
             error = future.exception()
             if isinstance(error, CncError):

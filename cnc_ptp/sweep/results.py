@@ -29,7 +29,7 @@ class Row(NamedTuple):
 
 
 class Results(NamedTuple):
-    """A sweep that is finished: names of what varied, goals, and a row for each variant in the order of their numbers."""
+    """A sweep that is finished: names of what varied, goals, a row for each variant in the order of their numbers."""
 
     names: Sequence[str]
     goals: Sequence[Goal]

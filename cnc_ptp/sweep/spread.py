@@ -15,7 +15,7 @@ from cnc_ptp.sweep.faults import BAD_VARIATION, NOTHING
 
 Scalar = bool | int | float | str
 FORMS = "a:b:n, log:a:b:n, a,b,c, a:b, uniform:a:b, log:a:b or normal:mean:sigma"
-MOST_VALUES = 100_000
+MOST_VALUES = 10**5
 
 
 @dataclass(frozen=True, slots=True)

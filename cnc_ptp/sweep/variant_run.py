@@ -63,7 +63,7 @@ def kernel_id() -> str:
 
 
 def compute(job: Job, variant: Variant) -> Row:
-    """Runs a variant. Whatever goes wrong in it becomes its row; raises CncError 26186 in a worker of another kernel."""
+    """Runs a variant. What goes wrong in it becomes its row; raises CncError 26186 in a worker of another kernel."""
     if job.kernel != kernel_id():
         raise CncError(UNFIT_WORKERS, f"a worker has cnc_ptp {kernel_id()}, this is {job.kernel}")
     try:
@@ -136,7 +136,7 @@ class Run:
 
 
 def require_sound(outputs: Outputs) -> None:
-    """Raises Failure for an error in a block, and for a command that was refused: the motion is not the intended one."""
+    """Raises Failure for an error, and for a command that was refused: the motion is not the intended one."""
     for output in outputs.values():
         for record in output.records:
             if not record.accepted:
