@@ -6,6 +6,7 @@ time, which plotly's own parallel coordinates need.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from itertools import combinations
 
@@ -14,7 +15,7 @@ import numpy.typing as npt
 import plotly.graph_objects as go
 
 from cnc_ptp.parameters.declare.declarations import ParameterValue
-from cnc_ptp.plots.colours import BLUE, FAINT, RED, SOFT
+from cnc_ptp.plots.colours import BLUE, FAINT, PAPER, RED, SOFT
 from cnc_ptp.plots.page import (
     MOST_ROWS,
     card_grid,
@@ -25,7 +26,6 @@ from cnc_ptp.plots.page import (
     plot_div,
     section,
     table,
-    text_cell,
 )
 from cnc_ptp.sweep.results import Results, Row
 
@@ -33,8 +33,10 @@ CLASSES = 8
 """Colours of parallel coordinates, by the first goal."""
 SCALE = ("#1d4f9e", "#2a7fb8", "#35a5a0", "#5cb85c", "#a6c13c", "#e5b93d", "#e08a3c", "#b0271d")
 """From the best variants to the worst."""
-WIDTH = 110
+WIDTH = 125
 """Pixels that an axis of parallel coordinates needs on a phone."""
+LINE = 16
+"""Characters of its label in a line."""
 
 
 def sweep_page(results: Results, title: str, plan: str) -> str:
@@ -80,9 +82,12 @@ def coordinates(results: Results) -> str:
     for place, axis in enumerate(columns):
         figure.add_vline(place, line={"color": SOFT, "width": 1})
         for height, text in axis.marks():
-            figure.add_annotation(x=place, y=height, text=text, showarrow=False, xanchor="left", xshift=3)
-    figure.update_layout(height=460, template="plotly_white", showlegend=False, margin={"l": 20, "r": 70, "t": 30})
+            figure.add_annotation(
+                x=place, y=height, text=text, showarrow=False, xanchor="left", xshift=3, bgcolor=PAPER
+            )
+    figure.update_layout(height=460, template="plotly_white", showlegend=False, margin={"l": 10, "r": 10, "t": 30})
     figure.update_xaxes(tickvals=[*range(len(labels))], ticktext=[wrapped(label) for label in labels], showgrid=False)
+    figure.update_xaxes(range=[-0.5, len(labels) - 0.4], tickangle=0, zeroline=False)
     figure.update_yaxes(visible=False, range=[-0.08, 1.08])
     note = f"Blue: the best for {results.goals[0].label}; red: the worst. Failed variants have no line."
     wide = f'<div style="min-width: {WIDTH * len(labels)}px">{plot_div(figure, "coordinates")}</div>'
@@ -131,8 +136,13 @@ def lines(columns: Sequence[Column], members: npt.NDArray[np.int64], rows: Seque
 
 
 def wrapped(label: str) -> str:
-    """A label in several lines."""
-    return label.replace(".", ".<br>", 1).replace("(", "(<br>", 1)
+    """A label in lines as short as its dots and brackets permit."""
+    lines = [""]
+    for word in re.findall(r"[^.(]*[.(]?", label):
+        if len(lines[-1] + word) > LINE:
+            lines.append("")
+        lines[-1] += word
+    return "<br>".join(line for line in lines if line)
 
 
 def fronts(results: Results) -> str:
@@ -241,10 +251,10 @@ def variants(results: Results) -> str:
 
 def cells(row: Row) -> list[str]:
     values = [name_cell(shown(value)) for value in row.values]
-    goals = [text_cell("") if row.error else name_cell(f"{goal:.6g}") for goal in row.goals]
+    goals = [name_cell("") if row.error else name_cell(f"{goal:.6g}") for goal in row.goals]
     return [
         number_cell(row.number),
         *values,
         *goals,
-        text_cell(f"P-ERR-{row.error} {row.message}" if row.error else ""),
+        name_cell(f"P-ERR-{row.error} {row.message}" if row.error else ""),
     ]

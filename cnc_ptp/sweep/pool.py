@@ -25,7 +25,9 @@ KEPT = "what is finished is kept, the same command continues"
 
 
 class Pool:
-    """Workers for a `with` block. Raises CncError 26013 without Dask, 26181 for a scheduler that is not there.
+    """Workers for a `with` block.
+
+    Raises CncError 26013 without Dask, 26181 for a scheduler that is not there, 26186 for processes that do not start.
 
     A variant whose worker dies is computed by another one. If that happens again and again it is computed alone at the
     end, and fails if its worker dies then, too: the other variants on that worker were not at fault.
@@ -39,15 +41,19 @@ class Pool:
         self._client: Any = self._connected(scheduler) if scheduler else self._started(workers or os.cpu_count() or 1)
 
     def _started(self, workers: int) -> Any:
-        self._cluster = self._distributed.LocalCluster(
-            n_workers=workers,
-            threads_per_worker=1,
-            processes=True,
-            memory_limit=0,
-            dashboard_address=None,
-            silence_logs=logging.CRITICAL,
-            preload="cnc_ptp.sweep.worker",
-        )
+        """Raises CncError 26186."""
+        try:
+            self._cluster = self._distributed.LocalCluster(
+                n_workers=workers,
+                threads_per_worker=1,
+                processes=True,
+                memory_limit=0,
+                dashboard_address=None,
+                silence_logs=logging.CRITICAL,
+                preload="cnc_ptp.sweep.worker",
+            )
+        except (RuntimeError, OSError) as error:
+            raise CncError(UNFIT_WORKERS, f"the worker processes do not start: {error}", NOTHING) from None
         return self._distributed.Client(self._cluster)
 
     def _connected(self, scheduler: str) -> Any:

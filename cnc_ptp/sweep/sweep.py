@@ -20,7 +20,7 @@ from cnc_ptp.sweep.pool import Pool
 from cnc_ptp.sweep.results import Results, Row, Variant, by_number
 from cnc_ptp.sweep.table import read_table, write_table
 from cnc_ptp.sweep.variant_run import Job, kernel_id
-from cnc_ptp.sweep.variation import Variation
+from cnc_ptp.sweep.variation import Variation, keys_of
 
 
 @dataclass
@@ -118,10 +118,9 @@ def make_job(
     seconds: float | None,
 ) -> Job:
     """What the workers get."""
-    varied = tuple((variation.unit, variation.ros_name) for variation in variations)
     texts = tuple(goal.text for goal in goals)
     commands = tuple((entry.at, entry.command) for entry in entries)
-    return Job(machine_text, machine_file, commands, varied, texts, seconds, kernel_id())
+    return Job(machine_text, machine_file, commands, keys_of(variations), texts, seconds, kernel_id())
 
 
 def digest(text: str) -> str:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 from cnc_ptp.errors import CncError, nearest_name
@@ -15,10 +16,7 @@ from cnc_ptp.parameters.read.parameter_set import parameter_limits
 from cnc_ptp.parameters.read.values import BadValue, checked_value
 from cnc_ptp.parameters.view.by_name import parameter_by_name
 from cnc_ptp.sweep.faults import BAD_PARAMETER, BAD_VARIATION, NOTHING
-from cnc_ptp.sweep.spread import Interval, Normal, Scalar, Spread, Values, read_spread
-
-SIGMAS = 3.0
-"""Of a normal distribution, that must be possible."""
+from cnc_ptp.sweep.spread import Interval, Scalar, Spread, Values, read_spread
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +63,7 @@ class Variation:
         return found
 
     def extremes(self) -> list[ParameterValue]:
-        """The outermost values, of a normal distribution those that hardly any variant is beyond."""
+        """The outermost values, of a normal distribution its mean."""
         spread = self.spread
         if isinstance(spread, Values):
             values = self.values()
@@ -73,7 +71,12 @@ class Variation:
             return [min(numbers), max(numbers)] if len(numbers) == len(values) else list(values)
         if isinstance(spread, Interval):
             return [self.checked(self.of(number)) for number in (spread.low, spread.high)]
-        return [self.checked(self.of(spread.mean + sign * SIGMAS * spread.sigma)) for sign in (-1.0, 1.0)]
+        return [self.checked(self.of(spread.mean))]
+
+
+def keys_of(variations: Iterable[Variation]) -> tuple[tuple[str, str], ...]:
+    """Unit and parameter of each."""
+    return tuple((variation.unit, variation.ros_name) for variation in variations)
 
 
 def changes_of(names: Sequence[tuple[str, str]], values: Iterable[ParameterValue]) -> Changes:
@@ -122,7 +125,7 @@ def check_variations(variations: Sequence[Variation], text: str, file: str) -> N
     contradicts each other shows when the variant runs.
     """
     for variation in variations:
-        extremes = [] if isinstance(variation.spread, Normal) else variation.extremes()
+        extremes = variation.extremes()
         if limits_are_fixed(variation, variations):
             for value in extremes:
                 check_alone(variation, value, text, file)
@@ -143,3 +146,11 @@ def check_alone(variation: Variation, value: ParameterValue, text: str, file: st
         for problem in error.problems:
             if problem.error_id == CONTRADICTION and problem.text.startswith(variation.subject):
                 raise CncError(BAD_PARAMETER, problem.text, NOTHING, where="--vary") from None
+
+
+def outermost_machines(variations: Sequence[Variation], text: str, file: str) -> Iterator[MachineParameters]:
+    """With the least of all values, and with the largest, as far as they are possible together."""
+    for place in (0, -1):
+        changes = changes_of(keys_of(variations), [variation.extremes()[place] for variation in variations])
+        with suppress(ParameterError):
+            yield load_machine(text, file, changes=changes)

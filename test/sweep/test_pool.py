@@ -184,3 +184,14 @@ def test_ctrl_c_keeps_what_is_finished_and_leaves_no_process(tmp_path):
     assert errors == f"P-ERR-26106 the sweep was interrupted; {text}\n"
     assert kept >= 3 and not target.exists()
     assert children and not psutil.wait_procs(children, timeout=10.0)[1]
+
+
+def test_processes_that_do_not_start(monkeypatch):
+    def no_cluster(**options):
+        raise RuntimeError("Nanny failed to start.")
+
+    monkeypatch.setattr("distributed.LocalCluster", no_cluster)
+    with pytest.raises(CncError) as caught:
+        Pool(1, None)
+    reason = "the worker processes do not start: Nanny failed to start."
+    assert str(caught.value) == f"P-ERR-26186 {reason}; nothing was started"

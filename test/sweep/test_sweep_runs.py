@@ -65,7 +65,9 @@ def test_failures_are_rows(tmp_path):
     assert whole.error == 0 and math.isfinite(whole.goals[0])
     assert followed.error == 17744 and followed.message.startswith("axis x: following error 0.1")
     assert refused.error == also.error == 120002
-    assert refused.message.endswith(": axis X: 5 mm lies beyond the positive soft limit 2 mm (P-AXIS-00178); nothing was started")
+    assert refused.message.endswith(
+        ": axis X: 5 mm lies beyond the positive soft limit 2 mm (P-AXIS-00178); nothing was started"
+    )
     assert all(map(math.isnan, (*followed.goals, *refused.goals)))
     assert pq.read_table(sweep.target)[LARGEST].to_pylist()[1:] == [None] * 3
     assert [row.number for row in sweep.results.failed] == [1, 2, 3]

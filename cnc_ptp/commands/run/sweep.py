@@ -15,7 +15,9 @@ from cnc_ptp.commissioning.faults import BAD_OUTPUT
 from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import INTERRUPTED, EndRequest
 from cnc_ptp.machine.run_entries import read_entries
-from cnc_ptp.parameters import load_machine, machine_text
+from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.parameters import MachineParameters, load_machine, machine_text
+from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.sweep.goals import Goal, read_goals
 from cnc_ptp.sweep.optimiser import OptimisedPlan
 from cnc_ptp.sweep.page import sweep_page
@@ -23,7 +25,7 @@ from cnc_ptp.sweep.plans import Plan, grid, random_plan
 from cnc_ptp.sweep.pool import Pool
 from cnc_ptp.sweep.results import Results, Row
 from cnc_ptp.sweep.sweep import Sweep, make_job
-from cnc_ptp.sweep.variation import Variation, check_variations, read_variations
+from cnc_ptp.sweep.variation import Variation, check_variations, outermost_machines, read_variations
 
 PARQUET = ".parquet"
 MOST_SHOWN = 5
@@ -52,10 +54,11 @@ def sweep(
     text = machine_text(machine)
     parameters = load_machine(text, machine)
     print_missing_folders(parameters)
-    entries = read_entries(parameters, program=program, scenario=scenario, dialect=dialect)
     variations = read_variations(vary, parameters)
     read = read_goals(goals, parameters)
     check_variations(variations, text, machine)
+    machines = [parameters, *outermost_machines(variations, text, machine)]
+    entries = first_possible(machines, program=program, scenario=scenario, dialect=dialect)
     plan = make_plan(variations, read, random, optimise, seed)
     job = make_job(text, machine, entries, variations, read, duration)
     whole = Sweep(job, variations, read, plan, Path(output))
@@ -82,6 +85,18 @@ def check_files(output: str, page: str | None, inputs: dict[str, str | None]) ->
     check_output(output, **inputs)
     if page is not None:
         check_page(page, **inputs)
+
+
+def first_possible(machines: Sequence[MachineParameters], **files: str | None) -> list[Entry]:
+    """Program and scenario, checked with the first machine that takes them; raises what the very first one says."""
+    refused: CncError | None = None
+    for machine in machines:
+        try:
+            return read_entries(machine, **files)  # type: ignore[arg-type]
+        except ProgramError as error:
+            refused = refused or error
+    assert refused is not None
+    raise refused
 
 
 def make_plan(
