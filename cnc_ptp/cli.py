@@ -166,10 +166,10 @@ def sweep_options(function: Callable[..., Any]) -> Callable[..., Any]:
 @main.command("sweep")
 @sweep_options
 def sweep_command(**options: Any) -> None:
-    """Run a machine offline again and again with other parameters; compare the runs by goals.
+    """Run a machine offline with many values of parameters.
 
-    All combinations of the values, --random ones, or those that an optimiser chooses. What is finished is kept: the
-    same command computes only what is missing.
+    The runs are compared by goals. There is one for each combination of the values, or for --random ones, or for those
+    that an optimiser chooses. What is finished is kept: the same command computes only what is missing.
     """
     if options["random"] is not None and options["optimise"] is not None:
         raise click.UsageError("--random and --optimise exclude each other.")

@@ -1,4 +1,4 @@
-(Short lines with corners: the smaller the tolerance of P-CHAN-90014, the longer it takes, docs/sweeps.md)
+(Short lines with corners: the smaller the tolerance of the machine file, the longer it takes, docs/sweeps.md)
 N10 #HSC ON [BSPLINE]
 N20 G1 X2 Y0.6 F6000
 N30 X4 Y0

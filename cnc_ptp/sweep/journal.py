@@ -1,4 +1,4 @@
-"""What a sweep has finished, line by line beside its table, so that an interrupted one goes on where it was."""
+"""What a sweep has finished, line by line beside its table, so that an interrupted one continues where it was."""
 
 from __future__ import annotations
 

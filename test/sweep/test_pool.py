@@ -58,7 +58,8 @@ def test_a_variant_that_kills_its_workers_is_a_row_and_the_others_are_computed(t
     sweep = sweep_in(tmp_path)
     assert sweep.run(lambda: Pool(1, None), never, nothing)
     assert [row.error for row in sweep.results.rows] == [0, 26188, 0, 0, 0]
-    assert sweep.results.rows[1].message == "the worker process dies whenever it computes this variant"
+    row = sweep.results.rows[1]
+    assert (row.error, row.message) == (26188, "the worker process dies whenever it computes this variant")
 
 
 def test_a_worker_with_another_kernel_is_refused(tmp_path):

@@ -4,22 +4,24 @@ import json
 import math
 import os
 from contextlib import suppress
+from types import SimpleNamespace
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 from commands_support import MILL, call
-from sweep_support import KV, LARGEST, PROGRAM, Here, program_in, run_here, sweep_in
+from sweep_support import KV, LARGEST, PROGRAM, Here, machine, program_in, run_here, sweep_in
 
 import cnc_ptp.recording
 from cnc_ptp.errors import CncError
+from cnc_ptp.protocol.blocks import PlcBlock
 from cnc_ptp.sweep.journal import Journal
 from cnc_ptp.sweep.optimiser import OptimisedPlan
 from cnc_ptp.sweep.plans import random_plan
 from cnc_ptp.sweep.results import Results, Row
 from cnc_ptp.sweep.table import write_table
-from cnc_ptp.sweep.variant_run import compute
+from cnc_ptp.sweep.variant_run import Failure, Run, compute
 
 NEW_NAME = "; nothing was started, give another name"
 
@@ -106,6 +108,16 @@ def test_a_run_that_breaks_off_is_a_row(tmp_path, monkeypatch):
     (variant,) = next(sweep.plan.batches())
     row = compute(sweep.job, variant)
     assert (row.error, row.message) == (26187, "the run broke off, ZeroDivisionError: division by zero")
+
+
+def test_a_run_that_fails_without_an_error_is_a_row(tmp_path):
+    """Here the PLC's report alone says so: a run that nobody can continue is aborted by it."""
+    sweep = sweep_in(tmp_path, "x.getriebe.0.kv=5000")
+    run = Run(machine(), [])
+    run.add({"plc": SimpleNamespace(name="plc", block=PlcBlock(0, 10, run_failed=True), events=[], records=[])})
+    with pytest.raises(Failure) as caught:
+        run.require_whole(sweep.job.seconds)
+    assert (caught.value.number, caught.value.text) == (26187, "the run failed")
 
 
 def test_an_interrupted_sweep_continues_and_ends_as_one_without_a_break(tmp_path):
