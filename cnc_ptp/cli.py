@@ -26,6 +26,8 @@ from cnc_ptp.start_options import start_options, take_start
 
 MACHINE = click.argument("machine", type=click.Path(dir_okay=False))
 RECORDING = click.argument("recording", type=click.Path(dir_okay=False))
+SCENARIO = click.option("--scenario", type=click.Path(dir_okay=False), help="Timed PLC commands (YAML).")
+PROGRAM = click.option("--program", type=click.Path(dir_okay=False), help="NC program for the first channel.")
 CLIENTS = ("status", "do", "jog", "watch")
 MCAP_MAGIC = b"\x89MCAP"
 LIST_KINDS = ("axis", "channel", "tool", "zero", "clamp", "compensation", "startup")
@@ -56,9 +58,9 @@ def run_options(function: Callable[..., Any]) -> Callable[..., Any]:
         click.option(
             "--plc", type=click.Path(dir_okay=False), help="PLC in a file: a Python class Plc with cycle(io)."
         ),
-        click.option("--scenario", type=click.Path(dir_okay=False), help="Timed PLC commands (YAML)."),
+        SCENARIO,
         DIALECT,
-        click.option("--program", type=click.Path(dir_okay=False), help="NC program for the first channel."),
+        PROGRAM,
         MACHINE,
     ):
         function = option(function)
@@ -154,9 +156,9 @@ def sweep_options(function: Callable[..., Any]) -> Callable[..., Any]:
             "--vary", multiple=True, required=True, help="x.getriebe.0.kv=2000:8000:13, =a,b,c, =normal:mean:sigma ..."
         ),
         click.option("--duration", type=DURATION, help="End each run after this many seconds."),
-        click.option("--scenario", type=click.Path(dir_okay=False), help="Timed PLC commands (YAML)."),
+        SCENARIO,
         DIALECT,
-        click.option("--program", type=click.Path(dir_okay=False), help="NC program for the first channel."),
+        PROGRAM,
         MACHINE,
     ):
         function = option(function)

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import Any
 
-from cnc_ptp.errors import CncError
-from cnc_ptp.recording.opened import NO_PACKAGE
+from cnc_ptp.recording.opened import package
 
 BAD_VARIATION = 26177
 BAD_PARAMETER = 26178
@@ -23,9 +21,4 @@ NOTHING = "nothing was started"
 
 def sweep_package(name: str) -> Any:
     """A package that only sweeps need. Raises CncError 26013 where it is not installed."""
-    try:
-        return import_module(name)
-    except ImportError:
-        raise CncError(
-            NO_PACKAGE, f"{name} is not installed", f"{NOTHING}, install it with: pip install 'cnc_ptp[sweep]'"
-        ) from None
+    return package(name, f"{NOTHING}, install it with: pip install 'cnc_ptp[sweep]'")

@@ -12,7 +12,7 @@ from typing import Any
 from cnc_ptp.errors import CncError
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import Command, json_of
-from cnc_ptp.sweep.faults import NOTHING, OTHER_SWEEP
+from cnc_ptp.sweep.faults import NOTHING, OTHER_SWEEP, sweep_package
 from cnc_ptp.sweep.goals import Goal
 from cnc_ptp.sweep.journal import ENDING, Description, Journal
 from cnc_ptp.sweep.plans import Plan
@@ -66,6 +66,7 @@ class Sweep:
         `make_pool` is called when there is something to compute; `show` gets the number of finished variants.
         Raises CncError 26013, 26181, 26182, 26183, 26186, 27030.
         """
+        sweep_package("pyarrow")  # the table needs it, at the end
         description = self.description()
         if self.target.exists():
             self.rows = read_table(self.target, description, len(self.goals))
@@ -89,7 +90,12 @@ class Sweep:
             for batch in self.plan.batches():
                 missing = [variant for variant in batch if not self._known(variant)]
                 if missing and pool is None:
-                    pool = closing.enter_context(make_pool())
+                    try:
+                        pool = closing.enter_context(make_pool())
+                    except CncError:
+                        if ended():
+                            return False
+                        raise
                 if missing and pool is not None:
                     for row in pool.compute(self.job, missing, ended):
                         journal.add(row)

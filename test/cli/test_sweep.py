@@ -128,3 +128,10 @@ def test_a_page_without_a_sound_variant_and_with_markup_in_a_text(tmp_path):
     page = sweep_page(Results(["a"], goals, rows), "s.parquet", "grid")
     assert "<td>P-ERR-26187 &lt;script&gt;</td>" in page and "&lt;b&gt;" in page
     assert "<h2>Pareto" not in page and "<h2>Parallel" not in page
+
+
+def test_an_interrupt_before_the_first_variant(tmp_path, monkeypatch):
+    monkeypatch.setattr("cnc_ptp.commands.run.sweep.Pool", lambda workers, scheduler: Here(after=0))
+    result = sweep(tmp_path)
+    assert result.stderr == "P-ERR-26106 the sweep was interrupted; no variant was finished\n"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["short.nc"]

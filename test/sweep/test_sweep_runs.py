@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import sys
 from contextlib import suppress
 from types import SimpleNamespace
 
@@ -19,6 +20,7 @@ from cnc_ptp.protocol.blocks import PlcBlock
 from cnc_ptp.sweep.journal import Journal
 from cnc_ptp.sweep.optimiser import OptimisedPlan
 from cnc_ptp.sweep.plans import random_plan
+from cnc_ptp.sweep.pool import Pool
 from cnc_ptp.sweep.results import Results, Row
 from cnc_ptp.sweep.table import write_table
 from cnc_ptp.sweep.variant_run import Failure, Run, compute
@@ -337,9 +339,29 @@ def test_texts_and_mixed_values_become_columns(tmp_path):
 
 
 def test_a_package_that_is_missing(tmp_path, monkeypatch):
-    monkeypatch.setitem(__import__("sys").modules, "optuna", None)
+    monkeypatch.setitem(sys.modules, "optuna", None)
     sweep = sweep_in(tmp_path)
     with pytest.raises(CncError) as caught:
         OptimisedPlan(sweep.variations, sweep.goals, 8, 0)
     text = "optuna is not installed; nothing was started, install it with: pip install 'cnc_ptp[sweep]'"
     assert str(caught.value) == f"P-ERR-26013 {text}"
+
+
+@pytest.mark.parametrize("name", ["pyarrow", "distributed"])
+def test_nothing_is_computed_without_a_package(tmp_path, monkeypatch, name):
+    monkeypatch.setitem(sys.modules, name, None)
+    sweep, pool = sweep_in(tmp_path), Here()
+    with pytest.raises(CncError) as caught:
+        sweep.run(lambda: Pool(1, None) if name == "distributed" else pool, lambda: False, lambda count: None)
+    text = f"{name} is not installed; nothing was started, install it with: pip install 'cnc_ptp[sweep]'"
+    assert str(caught.value) == f"P-ERR-26013 {text}"
+    assert not pool.computed and not sweep.journal.exists()
+
+
+def test_an_interrupt_while_workers_start_is_no_error_of_theirs(tmp_path):
+    def broken():
+        raise CncError(26186, "the worker processes do not start: interrupted", "nothing was started")
+
+    sweep = sweep_in(tmp_path)
+    assert not sweep.run(broken, lambda: True, lambda count: None)
+    assert not sweep.journal.exists()

@@ -67,26 +67,14 @@ FORMS = "a:b:n, log:a:b:n, a,b,c, a:b, uniform:a:b, log:a:b or normal:mean:sigma
         ("log:0:2", "has a logarithm of 0, which is not above 0"),
         ("log:-1:2:3", "has a logarithm of -1, which is not above 0"),
         ("normal:1:0", "is empty: sigma 0 is not above 0"),
+        ("", "has an empty value"),
+        ("[1]", "has a value that is neither number nor text"),
     ],
 )
 def test_ranges_that_are_refused(mill, text, reason):
     with pytest.raises(CncError) as caught:
         read_variations([f"x.getriebe.0.kv={text}"], mill)
     assert str(caught.value) == f"P-ERR-26177 --vary: range '{text}' {reason}{END}"
-
-
-@pytest.mark.parametrize(
-    ("text", "reason"),
-    [
-        ("", "range '' has an empty value"),
-        ("1,,2", "range '' has an empty value"),
-        ("[1]", "range '[1]' has a value that is neither number nor text"),
-    ],
-)
-def test_values_that_are_refused(mill, text, reason):
-    with pytest.raises(CncError) as caught:
-        read_variations([f"x.getriebe.0.kv={text}"], mill)
-    assert str(caught.value) == f"P-ERR-26177 --vary: {reason}{END}"
 
 
 KV = "axis list, P-AXIS-00099 getriebe[0].kv of /x"
@@ -137,6 +125,11 @@ def test_a_limit_that_is_another_parameter_counts_unless_that_varies(mill):
     )
     assert str(caught.value).endswith(END)
     check_variations(read_variations([rapid, limit], mill), text, str(MILL))
+
+
+def test_an_empty_value_of_a_list(mill):
+    with pytest.raises(CncError, match=r"--vary: range '' has an empty value"):
+        read_variations(["x.getriebe.0.kv=1,,2"], mill)
 
 
 def test_names_are_those_of_machine_files_lists_and_numbers(mill):

@@ -66,15 +66,22 @@ def sweep(
     with EndRequest() as end, SweepProgress(plan.total) as progress:
         finished = whole.run(lambda: Pool(workers, scheduler), lambda: end.given, progress.show)
     if not finished:
-        kept = f"{len(whole.rows)} of {plan.total} variants are kept in {whole.journal}"
-        text = f"P-ERR-{INTERRUPTED} the sweep was interrupted; {kept}, the same command computes the others"
-        Console(stderr=True, highlight=False, soft_wrap=True).print(text, style="bold red", markup=False)
+        print_interrupted(whole)
         return 128 + end.number
     results = whole.results
     print_results(results, output, whole.taken_over, time.monotonic() - started)
     if page is not None:
         write_output(page, sweep_page(results, Path(output).name, plan.description), remains=f"{output} is complete")
     return RUN_FAILED if len(results.failed) == plan.total else 0
+
+
+def print_interrupted(whole: Sweep) -> None:
+    """What is kept, and how to continue."""
+    text = f"P-ERR-{INTERRUPTED} the sweep was interrupted; no variant was finished"
+    if whole.rows:
+        kept = f"{len(whole.rows)} of {whole.plan.total} variants are kept in {whole.journal}"
+        text = f"P-ERR-{INTERRUPTED} the sweep was interrupted; {kept}, the same command computes the others"
+    Console(stderr=True, highlight=False, soft_wrap=True).print(text, style="bold red", markup=False)
 
 
 def check_files(output: str, page: str | None, inputs: dict[str, str | None]) -> None:
