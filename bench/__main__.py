@@ -36,6 +36,7 @@ TOPICS = (
     "slaves",
     "spindles",
     "lists",
+    "sweep",
 )
 
 

@@ -45,6 +45,9 @@ identify = _entry("identify")
 circle = _entry("circle")
 curve = _entry("curve")
 lists = _entry("lists")
+sweep = _entry("sweep")
+export = _entry("export")
+recover = _entry("recover")
 
 if __name__ == "__main__":
     main()

@@ -26,6 +26,8 @@ from cnc_ptp.start_options import start_options, take_start
 
 MACHINE = click.argument("machine", type=click.Path(dir_okay=False))
 RECORDING = click.argument("recording", type=click.Path(dir_okay=False))
+SCENARIO = click.option("--scenario", type=click.Path(dir_okay=False), help="Timed PLC commands (YAML).")
+PROGRAM = click.option("--program", type=click.Path(dir_okay=False), help="NC program for the first channel.")
 CLIENTS = ("status", "do", "jog", "watch")
 MCAP_MAGIC = b"\x89MCAP"
 LIST_KINDS = ("axis", "channel", "tool", "zero", "clamp", "compensation", "startup")
@@ -56,9 +58,9 @@ def run_options(function: Callable[..., Any]) -> Callable[..., Any]:
         click.option(
             "--plc", type=click.Path(dir_okay=False), help="PLC in a file: a Python class Plc with cycle(io)."
         ),
-        click.option("--scenario", type=click.Path(dir_okay=False), help="Timed PLC commands (YAML)."),
+        SCENARIO,
         DIALECT,
-        click.option("--program", type=click.Path(dir_okay=False), help="NC program for the first channel."),
+        PROGRAM,
         MACHINE,
     ):
         function = option(function)
@@ -135,6 +137,51 @@ def require_recording(options: dict[str, Any]) -> None:
     """Raises UsageError for a trigger without a recording."""
     if options["record_when"] is not None and options["record"] is None:
         raise click.UsageError("--record-when needs --record")
+
+
+def sweep_options(function: Callable[..., Any]) -> Callable[..., Any]:
+    """What varies, what is measured, where it is computed."""
+    for option in (
+        click.option("--scheduler", metavar="ADDRESS", help="Dask scheduler (tcp://host:8786) instead of processes."),
+        click.option("--workers", type=click.IntRange(min=1), help="Processes; default: one for each processor."),
+        click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of random values."),
+        click.option("--optimise", type=click.IntRange(min=1), metavar="N", help="N variants chosen by their results."),
+        click.option("--random", type=click.IntRange(min=1), metavar="N", help="N random variants, instead of a grid."),
+        click.option("--page", type=click.Path(dir_okay=False), help="HTML page to write."),
+        click.option("-o", "--output", required=True, type=click.Path(dir_okay=False), help="Parquet file to write."),
+        click.option(
+            "--goal", "goals", multiple=True, required=True, help="max(following_error.x), max:mean(path_velocity) ..."
+        ),
+        click.option(
+            "--vary", multiple=True, required=True, help="x.getriebe.0.kv=2000:8000:13, =a,b,c, =normal:mean:sigma ..."
+        ),
+        click.option("--duration", type=DURATION, help="End each run after this many seconds."),
+        SCENARIO,
+        DIALECT,
+        PROGRAM,
+        MACHINE,
+    ):
+        function = option(function)
+    return function
+
+
+@main.command("sweep")
+@sweep_options
+def sweep_command(**options: Any) -> None:
+    """Run a machine offline with many values of parameters.
+
+    The runs are compared by goals. There is one for each combination of the values, or for --random ones, or for those
+    that an optimiser chooses. What is finished is kept: the same command computes only what is missing.
+    """
+    if options["random"] is not None and options["optimise"] is not None:
+        raise click.UsageError("--random and --optimise exclude each other.")
+    if options["workers"] is not None and options["scheduler"] is not None:
+        raise click.UsageError("--workers and --scheduler exclude each other: a scheduler has its own workers.")
+    if options["program"] is None and options["scenario"] is None:
+        raise click.UsageError("--program or --scenario is needed.")
+    from cnc_ptp.commands.run.sweep import sweep
+
+    sys.exit(sweep(**options))
 
 
 COMPLETE_FROM = click.option(

@@ -273,14 +273,13 @@ def files_of(path: Path) -> list[Path]:
         ) from None
 
 
-def package(name: str) -> Any:
-    """A package that is needed for tables only. Raises CncError 26013 where it is not installed."""
+def package(name: str, effect: str = "") -> Any:
+    """A package that not all commands need. Raises CncError 26013, with the `effect`, where it is not installed."""
     try:
         return import_module(name)
     except ImportError:
-        raise CncError(
-            NO_PACKAGE, f"{name} is not installed", f"{NOTHING}, install it with: pip install {name}"
-        ) from None
+        remedy = effect if effect else f"{NOTHING}, install it with: pip install {name}"
+        raise CncError(NO_PACKAGE, f"{name} is not installed", remedy) from None
 
 
 def ahead(workers: ThreadPoolExecutor, call: Callable[[Item], Result], items: Iterable[Item]) -> Iterator[Result]:

@@ -19,6 +19,7 @@ from bench import (
     smoothing,
     spindles,
     streaming,
+    sweep,
 )
 from bench.figures import Effort
 from bench.graph_run import SUPERVISOR, GraphRun, Watch, node_name, run_graph
@@ -32,7 +33,7 @@ SMALLEST = Effort(runs=1, size=0.002, graph_seconds=1.0)
 
 
 @pytest.mark.parametrize(
-    "topic", [interpreter, motion, control, smoothing, lookahead, streaming, recording, offline, spindles, lists]
+    "topic", [interpreter, motion, control, smoothing, lookahead, streaming, recording, offline, spindles, lists, sweep]
 )
 def test_topic_yields_figures(topic) -> None:
     said: list[str] = []
