@@ -71,7 +71,7 @@ class Encoder:
                 self._note_live(blocks)
 
     def encode(self, root: object) -> Any:
-        """The value of an object; all that it leads to gets a row. Raises CncError 26140."""
+        """The value of an object; all that it leads to gets a row. Raises CncError 26150."""
         value = self._value(root, "")
         while self._waiting:
             found, row, self._place = self._waiting.pop()

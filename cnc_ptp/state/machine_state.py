@@ -56,7 +56,7 @@ class StateStore:
         self.texts: MutableMapping[str, str] = {}
 
     def encode(self, machine: OfflineMachine, *, with_plc: bool = False) -> bytes:
-        """All units but the PLC, whose commands a recording has. Raises CncError 26140.
+        """All units but the PLC, whose commands a recording has. Raises CncError 26150.
 
         `with_plc`: also that; not if it executes a file.
         """
@@ -70,7 +70,7 @@ class StateStore:
         return MAGIC + LAYOUT.to_bytes(2, "little") + kernel_digest() + check_sum(rest) + rest
 
     def restore(self, state: bytes) -> MachineState:
-        """New units in a state. Raises CncError 26141 for damaged bytes, 26142 for those of another kernel."""
+        """New units in a state. Raises CncError 26151 for damaged bytes, 26152 for those of another kernel."""
         content = read(state)
         try:
             next_cycle, root, shapes, rows = json.loads(content)
@@ -92,7 +92,7 @@ def interpreters(runners: Mapping[str, UnitRunner]) -> list[RunningBlocks]:
 
 
 def read(state: bytes) -> bytes:
-    """The JSON text of a state. Raises CncError 26141, 26142."""
+    """The JSON text of a state. Raises CncError 26151, 26152."""
     if len(state) < HEAD or state[:4] != MAGIC:
         raise damaged(f"its {len(state)} bytes do not begin as those of a state")
     layout = int.from_bytes(state[4:6], "little")

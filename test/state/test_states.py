@@ -1,0 +1,179 @@
+"""Stored states: whatever was stored, new units continue from it as the run did, to the bit."""
+
+from __future__ import annotations
+
+import random
+from pathlib import Path
+
+import pytest
+from machine_support import MILL, ROOT, MachineBench
+from state_support import Run, outputs_of, require_same_continuation
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.offline import OfflineMachine
+from cnc_ptp.machine.wiring import build_units
+from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.parameters import load_machine
+from cnc_ptp.plc.scenario import Entry
+from cnc_ptp.protocol.blocks import Command
+from cnc_ptp.state import machine_state
+from cnc_ptp.state.machine_state import StateStore
+
+SPINDLES, FIGURES = "examples/spindles/", "examples/figures/"
+RUNS = [
+    Run("config/mill.yaml", "examples/bracket.nc", "examples/bracket_overrides.yaml"),
+    Run("config/mill.yaml", "examples/pocket.nc"),
+    Run("config/mill.yaml", "examples/plate.ngc", dialect="iso"),
+    Run("config/mill.yaml", "examples/tapping.nc"),
+    Run("config/lathe.yaml", "examples/caxis.nc"),
+    Run("config/lathe.yaml", "examples/turned_part.nc"),
+    Run("config/lathe.yaml", "examples/threads/chain.nc"),
+    Run("examples/probe.yaml", "examples/probe.nc"),
+    Run("examples/homing.yaml", "examples/homing.nc"),
+    Run("examples/sercos.yaml", scenario="examples/sercos_homing.yaml"),
+    Run("config/ptp.yaml", scenario="examples/trajectory.yaml"),
+    Run("config/ptp.yaml", scenario=FIGURES + "ptp_external_setpoints.yaml"),
+    Run("config/ptp.yaml", scenario=FIGURES + "ptp_compensation_partial.yaml"),
+    Run("config/ptp.yaml", scenario=FIGURES + "slave_cam.yaml"),
+    Run("config/ptp.yaml", scenario=FIGURES + "slave_flying_saw.yaml"),
+    Run("config/gantry.yaml", scenario=FIGURES + "slave_gantry.yaml"),
+    Run("config/spindle_curves.yaml", scenario=FIGURES + "spindle_curve_points.yaml"),
+    Run(SPINDLES + "plc_spindle.yaml", SPINDLES + "din.nc", SPINDLES + "plc.yaml"),
+    Run(SPINDLES + "two_channels.yaml", SPINDLES + "channel1.nc", SPINDLES + "two_channels_start.yaml"),
+    Run(SPINDLES + "synchronous.yaml", SPINDLES + "override.nc", SPINDLES + "override.yaml"),
+    Run(SPINDLES + "gears_programmed.yaml", SPINDLES + "gears_programmed.nc"),
+]
+
+
+@pytest.mark.parametrize("run", RUNS, ids=lambda run: run.name)
+def test_new_units_continue_a_stored_run_to_the_bit(run: Run) -> None:
+    machine = run.parameters()
+    require_same_continuation(machine, run.entries(machine), seed=run.name, places=3, follow=30, seconds=12.0)
+
+
+WAITING = """
+#VAR
+V.P.N
+#ENDVAR
+V.P.N = 0
+$WHILE V.P.N < 8
+V.P.N = V.P.N + 1
+G41 D1 G01 X[10*V.P.N] Y10 F3000
+V.P.N = V.P.N + V.A.ACT_POS.X / 1000
+G01 X[V.A.ACT_POS.X + 3] Y[V.P.N]
+G40 X0
+#TIME 0.05
+$ENDWHILE
+M30
+"""
+
+
+def entries(text: str) -> list[Entry]:
+    load = Command("channel", "load", {"program": "waiting.nc", "text": text})
+    return [Entry(0.0, load), Entry(0.0, Command("channel", "start", {}))]
+
+
+def test_a_program_that_reads_what_only_the_run_knows_continues_where_it_was() -> None:
+    program = WAITING.replace("#TIME 0.05\n", "G04 0.05\n").replace("G41 D1 ", "").replace("G40 X0", "G01 X0")
+    require_same_continuation(MILL, entries(program), seed="waits", places=8, follow=60, seconds=10.0)
+
+
+def streamed_machine() -> object:
+    text = (ROOT / "config" / "mill.yaml").read_text(encoding="utf-8")
+    return load_machine(text, "mill.yaml")
+
+
+def test_manual_blocks_keep_their_state() -> None:
+    texts = ["G91 G01 X5 F2000", "G54 Y3", "V.S.A = 0", "G90 G00 X0"]
+    given = [Entry(0.2 + at, Command("channel", "mdi", {"text": text})) for at, text in enumerate(texts) if "V.S" not in text]
+    require_same_continuation(MILL, given, seed="manual", places=8, follow=60, seconds=4.0)
+
+
+def a_state(store: StateStore) -> bytes:
+    offline, _ = outputs_of(MILL, entries("G01 X50 Y20 F3000\nM30"), 0.3)
+    for _ in range(30):
+        offline.tick()
+    return store.encode(offline)
+
+
+def test_storing_changes_nothing_and_the_same_state_has_the_same_bytes() -> None:
+    store = StateStore(MILL)
+    assert a_state(store) == a_state(store)
+    assert a_state(StateStore(MILL)) == a_state(store)
+
+
+def test_a_state_with_a_byte_changed_or_cut_is_refused() -> None:
+    store = StateStore(MILL)
+    state = a_state(store)
+    generator = random.Random(19)
+    for place in [*range(machine_state.HEAD), *generator.sample(range(len(state)), 200)]:
+        changed = bytearray(state)
+        changed[place] ^= 1 << generator.randrange(8)
+        with pytest.raises(CncError) as refused:
+            store.restore(bytes(changed))
+        assert refused.value.number in (26151, 26152)
+    for length in [*range(machine_state.HEAD + 3), *generator.sample(range(len(state)), 50)]:
+        with pytest.raises(CncError) as refused:
+            store.restore(state[:length])
+        assert refused.value.number == 26151
+
+
+def sealed(text: bytes) -> bytes:
+    """A state with content that no encoder has made."""
+    import zstandard
+
+    rest = zstandard.compress(text)
+    head = machine_state.MAGIC + machine_state.LAYOUT.to_bytes(2, "little") + machine_state.kernel_digest()
+    return head + machine_state.check_sum(rest) + rest
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"",
+        b"[]",
+        b"[0,[0],[],[]]",
+        b'[0,[0],[],[["z"]]]',
+        b'[0,[0],[],[["F","os","system"]]]',
+        b'[0,[0],[["subprocess:Popen",["args"]]],[["o",0,1]]]',
+        b'[0,[0],[["cnc_ptp.cli:os.system",["args"]]],[["o",0,1]]]',
+        b'[0,[0],[],[["t",[0]]]]',
+    ],
+)
+def test_content_of_another_maker_is_refused(content: bytes) -> None:
+    with pytest.raises(CncError) as refused:
+        StateStore(MILL).restore(sealed(content))
+    assert refused.value.number == 26151
+
+
+def test_the_texts_of_the_refusals() -> None:
+    store = StateStore(MILL)
+    state = a_state(store)
+    assert refusal(store, b"abc") == (
+        "P-ERR-26151 checkpoint: the state is damaged: its 3 bytes do not begin as those of a state; nothing was restored"
+    )
+    assert refusal(store, state[:-1]) == (
+        "P-ERR-26151 checkpoint: the state is damaged: its check sum is wrong; nothing was restored"
+    )
+    assert refusal(store, state[:4] + b"\x02\x00" + state[6:]) == (
+        "P-ERR-26152 checkpoint: the state has layout 2, this version reads layout 1; nothing was restored"
+    )
+    assert refusal(store, state[:6] + bytes(16) + state[22:]) == (
+        "P-ERR-26152 checkpoint: the state is that of a kernel with other sources; nothing was restored"
+    )
+
+
+def refusal(store: StateStore, state: bytes) -> str:
+    with pytest.raises(CncError) as refused:
+        store.restore(state)
+    return str(refused.value)
+
+
+def test_what_has_no_form_is_refused_with_its_place() -> None:
+    offline = OfflineMachine(MILL, build_units(MILL))
+    offline.runner("x").unit.check_override = lambda command, percent: None
+    with pytest.raises(CncError) as refused:
+        StateStore(MILL).encode(offline)
+    assert str(refused.value) == (
+        "P-ERR-26150 checkpoint: the state holds a function at [][x].unit.check_override; no state was stored"
+    )
