@@ -18,7 +18,7 @@ from cnc_ptp.protocol.blocks import CommandRecord, Event, read_values
 from cnc_ptp.protocol.event_values import read_event_values
 from cnc_ptp.recording.bag import QOS
 from cnc_ptp.recording.mcap_chunks import McapRecords, MessageRun, RawRecord
-from cnc_ptp.recording.writer import MACHINE_FILE, METADATA, MISSING
+from cnc_ptp.recording.writer import CHECKPOINT, CHECKPOINT_TEXT, MACHINE_FILE, METADATA, MISSING
 from cnc_ptp.wire.layout import Layout, Records, fixed_layout
 from cnc_ptp.wire.schemas import full_name, parse_schema
 
@@ -92,6 +92,9 @@ class Recorded:
     missing: str = ""
     machine_yaml: str = ""
     attachments: dict[str, str] = field(default_factory=dict)
+    checkpoints: dict[int, bytes] = field(default_factory=dict)
+    """States of the units by the cycle before which they had it (cnc_ptp/state)."""
+    checkpoint_texts: dict[str, str] = field(default_factory=dict)
     metadata: dict[str, str] = field(default_factory=dict)
     topics: dict[str, TopicInfo] = field(default_factory=dict)
     states: dict[str, Records] = field(default_factory=dict)
@@ -234,11 +237,21 @@ class _Reader:
                     self.names.add(item)
         elif record.opcode == Opcode.ATTACHMENT:
             attachment = self.records.attachment(record)
-            self.recorded.attachments[attachment.name] = attachment.data.decode(errors="replace")
+            self._attachment(attachment.name, attachment.data)
         elif record.opcode == Opcode.METADATA:
             metadata = self.records.parse(Metadata.read, record)
             if metadata.name == METADATA:
                 self.recorded.metadata.update(metadata.metadata)
+
+    def _attachment(self, name: str, data: bytes) -> None:
+        recorded = self.recorded
+        cycle, digest = name.removeprefix(CHECKPOINT), name.removeprefix(CHECKPOINT_TEXT)
+        if digest != name:
+            recorded.checkpoint_texts[digest] = data.decode(errors="surrogatepass")
+        elif cycle != name and cycle.isdecimal():
+            recorded.checkpoints[int(cycle)] = data
+        else:
+            recorded.attachments[name] = data.decode(errors="replace")
 
     def finish(self) -> Recorded:
         recorded = self.recorded

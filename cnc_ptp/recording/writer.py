@@ -31,6 +31,10 @@ TWO_TYPES = 26008
 CLOSED = 26009
 ROOM = bytes(HEAD_SIZE)  # for the record head in front of each message
 MACHINE_FILE = "machine.yaml"
+CHECKPOINT = "checkpoint/"
+"""Attachments with states of the units: their names end with the first cycle behind it."""
+CHECKPOINT_TEXT = "checkpoint_text/"
+"""Attachments with long texts of the states: their names end with the digest."""
 METADATA = "cnc_ptp"
 MISSING = "missing"
 """Key of the metadata: what a recording that was closed for a dead recorder does not have."""
@@ -215,6 +219,11 @@ class Recording:
         """A file of the run, e.g. the NC program."""
         self._require_open(name)
         self._file.attachment(name, media_type, text.encode(), self.stamps.start_ns)
+
+    def checkpoint(self, cycle: int, state: bytes) -> None:
+        """The state of the units before `cycle`."""
+        self._require_open("a checkpoint")
+        self._file.attachment(f"{CHECKPOINT}{cycle}", "application/octet-stream", state, self.stamps.at(cycle))
 
     # writing
 

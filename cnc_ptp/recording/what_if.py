@@ -1,0 +1,157 @@
+"""A recorded run computed again with something changed: parameters, overrides, the program, further commands.
+
+Up to the time of the change all is as recorded, from the newest checkpoint on; from then on the change counts. Commands
+of the recording come at their cycles, whatever the changed run does.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.offline import OfflineMachine, Outputs
+from cnc_ptp.machine.wiring import build_units
+from cnc_ptp.parameters import MachineParameters, load_machine
+from cnc_ptp.parameters.changed import changed_text
+from cnc_ptp.plc.scenario import Entry
+from cnc_ptp.protocol.blocks import Command, CommandRecord
+from cnc_ptp.protocol.commands import COUPLINGS
+from cnc_ptp.protocol.unit import PLC
+from cnc_ptp.recording.checkpoints import state_before
+from cnc_ptp.recording.reader import Recorded
+from cnc_ptp.state.other_parameters import change_parameters
+
+TIME_OUTSIDE: Final = 26154
+NO_MACHINE: Final = 26155
+NO_LOAD: Final = 26157
+NOTHING: Final = "nothing was computed"
+
+
+@dataclass(frozen=True)
+class Change:
+    """What is to be different from `begin` (s) on; the run is followed to `end`, None: as long as it was recorded.
+
+    parameters  unit.parameter=value
+    override    of all channels, percent; recorded ones no longer count
+    program     arguments of the command `load` in place of the recorded ones
+    commands    further ones, at their times
+    """
+
+    begin: float = 0.0
+    end: float | None = None
+    parameters: Sequence[str] = ()
+    override: float | None = None
+    program: Mapping[str, Any] | None = None
+    commands: Sequence[Entry] = field(default=())
+
+
+class WhatIf:
+    """The changed run. `note` says from where it was computed; `machine_text` and `machine` have the parameters."""
+
+    def __init__(self, recorded: Recorded, change: Change, end_cycle: int) -> None:
+        """`end_cycle`: the cycle after the last recorded one.
+
+        Raises ParameterError, CncError 26153, 26154, 26155, 26157.
+        """
+        if not recorded.machine_yaml:
+            reason = f"recording {recorded.path}: holds no attachment machine.yaml"
+            raise CncError(NO_MACHINE, reason, f"{NOTHING}, record it with cnc_ptp")
+        self._recorded, self._change = recorded, change
+        self._old = load_machine(recorded.machine_yaml, f"{recorded.path}:machine.yaml")
+        self.machine_text = recorded.machine_yaml
+        self.machine = self._old
+        if change.parameters:
+            self.machine_text = changed_text(recorded.machine_yaml, change.parameters)
+            self.machine = load_machine(self.machine_text, f"{recorded.path}:machine.yaml")
+        self._cycle_time = self._old.cycle_time_us * 1e-6
+        self.begin = self._block_at(change.begin, end_cycle, "--from")
+        self.end = end_cycle if change.end is None else self._block_at(change.end, end_cycle, "--to")
+        self._commands = self._recorded_commands()
+        self._require_load()
+        self.note = ""
+
+    def run(self) -> Iterator[Outputs]:
+        """All blocks from `begin` on. Raises CncError 26156 for parameters that make other parts of a unit."""
+        machine = self._at_begin()
+        if self.machine is not self._old:
+            runners, blocks = machine.parts
+            change_parameters(runners, self._old, self.machine)
+            changed = OfflineMachine(self.machine, build_units(self.machine, end_when_idle=False))
+            changed.go_on_from(machine.next_cycle, runners, blocks)
+            machine = changed
+        while machine.next_cycle < self.end:
+            yield machine.replay_tick(self._changed_commands(machine.next_cycle))
+
+    def _block_at(self, seconds: float, end_cycle: int, option: str) -> int:
+        """The first cycle of the block in which a time lies. Raises CncError 26154."""
+        duration = end_cycle * self._cycle_time
+        if not 0.0 <= seconds <= duration:
+            reason = f"{option} {seconds:g} is not within the recorded time 0 ... {duration:g} s"
+            raise CncError(TIME_OUTSIDE, reason, NOTHING, value=seconds, limit=duration)
+        count = self._old.block_cycles
+        return round(seconds / self._cycle_time) // count * count
+
+    def _recorded_commands(self) -> dict[int, list[CommandRecord]]:
+        by_cycle: dict[int, list[CommandRecord]] = defaultdict(list)
+        for record in self._recorded.commands:
+            if record.target != PLC and not is_refused_coupling(record, self._old):
+                by_cycle[record.cycle].append(record)
+        return by_cycle
+
+    def _require_load(self) -> None:
+        """Raises CncError 26157 where there is no program to be replaced."""
+        if self._change.program is None:
+            return
+        loads = [record.cycle for records in self._commands.values() for record in records if record.command == "load"]
+        if not any(cycle >= self.begin for cycle in loads):
+            last = f"the last one is loaded at {max(loads) * self._cycle_time:g} s" if loads else "none is loaded"
+            reason = f"--program takes the place of a program that is loaded after --from, and {last}"
+            raise CncError(NO_LOAD, reason, NOTHING)
+
+    def _at_begin(self) -> OfflineMachine:
+        """The machine as it was recorded before `begin`."""
+        machine = OfflineMachine(self._old, build_units(self._old, end_when_idle=False))
+        if self.begin:
+            state, why = state_before(self._recorded, self._old, self.begin)
+            if state is None:
+                self.note = f"computed from 0 s: {why}"
+            else:
+                machine.go_on_from(*state)
+                self.note = f"computed from the checkpoint at {state.next_cycle * self._cycle_time:g} s"
+        while machine.next_cycle < self.begin:
+            machine.replay_tick(by_unit(map(Command.from_record, self._commands.get(machine.next_cycle, ()))))
+        return machine
+
+    def _changed_commands(self, cycle: int) -> dict[str, list[Command]]:
+        commands = [self._changed(record) for record in self._commands.get(cycle, ())]
+        given = [command for command in commands if command is not None]
+        if cycle == self.begin and self._change.override is not None:
+            given += [Command(name, "set_override", {"percent": self._change.override}) for name in self._old.channels]
+        end = cycle + self._old.block_cycles
+        for entry in self._change.commands:
+            if max(cycle, self.begin) <= round(entry.at / self._cycle_time) < end:
+                given.append(entry.command)
+        return by_unit(given)
+
+    def _changed(self, record: CommandRecord) -> Command | None:
+        change, command = self._change, Command.from_record(record)
+        if change.override is not None and command.command == "set_override" and command.target in self._old.channels:
+            return None
+        if change.program is not None and command.command == "load":
+            return Command(command.target, "load", dict(change.program), command.id)
+        return command
+
+
+def by_unit(commands: Iterator[Command] | Sequence[Command]) -> dict[str, list[Command]]:
+    units: dict[str, list[Command]] = defaultdict(list)
+    for command in commands:
+        units[command.target].append(command)
+    return units
+
+
+def is_refused_coupling(record: CommandRecord, machine: MachineParameters) -> bool:
+    """It changed nothing, and the PLC's reason is not recorded: fed in again, it might be carried out."""
+    return not record.accepted and record.command in COUPLINGS and record.target in machine.axes
