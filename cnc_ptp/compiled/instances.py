@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable
-from functools import lru_cache
+from functools import cache
 from typing import Any
 
 from cnc_ptp.compiled.sources import LIBRARY, library_file
@@ -26,7 +26,7 @@ def bare_instance(cls: type) -> Any:
     return _setup(cls)(cls) if is_compiled(cls) else object.__new__(cls)
 
 
-@lru_cache(maxsize=None)
+@cache
 def _setup(cls: type) -> Callable[[type], Any]:
     """mypyc's function that makes an instance. Its name has the shortest unambiguous end of the module's name."""
     library = ctypes.PyDLL(str(library_file(LIBRARY)))

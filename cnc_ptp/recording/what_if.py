@@ -17,12 +17,13 @@ from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters, load_machine
 from cnc_ptp.parameters.changed import changed_text
 from cnc_ptp.plc.scenario import Entry
-from cnc_ptp.protocol.blocks import Command, CommandRecord
+from cnc_ptp.protocol.blocks import ChannelBlock, Command, CommandRecord, PlcBlock, json_of
 from cnc_ptp.protocol.commands import COUPLINGS
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.recording.checkpoints import state_before
-from cnc_ptp.recording.reader import Recorded
+from cnc_ptp.recording.reader import Recorded, iter_messages
 from cnc_ptp.state.other_parameters import change_parameters
+from cnc_ptp.wire.block_codec import codec_of
 
 TIME_OUTSIDE: Final = 26154
 NO_MACHINE: Final = 26155
@@ -72,6 +73,8 @@ class WhatIf:
         self._commands = self._recorded_commands()
         self._require_load()
         self.note = ""
+        self._given: set[Given] = set()
+        """Commands that the units give again."""
 
     def run(self) -> Iterator[Outputs]:
         """All blocks from `begin` on. Raises CncError 26156 for parameters that make other parts of a unit."""
@@ -83,7 +86,7 @@ class WhatIf:
             changed.go_on_from(machine.next_cycle, runners, blocks)
             machine = changed
         while machine.next_cycle < self.end:
-            yield machine.replay_tick(self._changed_commands(machine.next_cycle))
+            yield machine.changed_tick(self._changed_commands(machine.next_cycle))
 
     def _block_at(self, seconds: float, end_cycle: int, option: str) -> int:
         """The first cycle of the block in which a time lies. Raises CncError 26154."""
@@ -97,7 +100,8 @@ class WhatIf:
     def _recorded_commands(self) -> dict[int, list[CommandRecord]]:
         by_cycle: dict[int, list[CommandRecord]] = defaultdict(list)
         for record in self._recorded.commands:
-            if record.target != PLC and not is_refused_coupling(record, self._old):
+            switches_plc = record.command in PLC_SWITCHES
+            if (record.target != PLC or switches_plc) and not is_refused_coupling(record, self._old):
                 by_cycle[record.cycle].append(record)
         return by_cycle
 
@@ -112,9 +116,9 @@ class WhatIf:
             raise CncError(NO_LOAD, reason, NOTHING)
 
     def _at_begin(self) -> OfflineMachine:
-        """The machine as it was recorded before `begin`."""
+        """The machine as it was recorded before `begin`, with a PLC that serves what the recorded one served."""
         machine = OfflineMachine(self._old, build_units(self._old, end_when_idle=False))
-        if self.begin:
+        if self.begin:  # at 0 there is nothing to be restored
             state, why = state_before(self._recorded, self._old, self.begin)
             if state is None:
                 self.note = f"computed from 0 s: {why}"
@@ -122,7 +126,15 @@ class WhatIf:
                 machine.go_on_from(*state)
                 self.note = f"computed from the checkpoint at {state.next_cycle * self._cycle_time:g} s"
         while machine.next_cycle < self.begin:
-            machine.replay_tick(by_unit(map(Command.from_record, self._commands.get(machine.next_cycle, ()))))
+            given = [each for each in self._commands.get(machine.next_cycle, ()) if each.target != PLC]
+            machine.replay_tick(by_unit([Command.from_record(each) for each in given]))
+        plc = machine.runner(PLC)
+        for record in self._recorded.commands:
+            if record.target == PLC and record.command in PLC_SWITCHES and record.cycle < self.begin:
+                plc.command(Command.from_record(record))
+        plc.unit.take_events()
+        plc.unit.take_records()
+        self._given = given_by_units(self._recorded, self.begin)
         return machine
 
     def _changed_commands(self, cycle: int) -> dict[str, list[Command]]:
@@ -138,6 +150,8 @@ class WhatIf:
 
     def _changed(self, record: CommandRecord) -> Command | None:
         change, command = self._change, Command.from_record(record)
+        if (record.cycle, record.target, record.command, record.arguments_json) in self._given:
+            return None
         if change.override is not None and command.command == "set_override" and command.target in self._old.channels:
             return None
         if change.program is not None and command.command == "load":
@@ -145,7 +159,40 @@ class WhatIf:
         return command
 
 
-def by_unit(commands: Iterator[Command] | Sequence[Command]) -> dict[str, list[Command]]:
+Given = tuple[int, str, str, str]
+"""Cycle, target, name and arguments of a command."""
+ANSWERS: Final = ("acknowledge", "coupling_answer", "gear_changed")
+PLC_SWITCHES: Final = ("auto_acknowledge", "serve")
+
+
+def given_by_units(recorded: Recorded, begin: int) -> set[Given]:
+    """Commands of channels, and the answers of the PLC to what channels and spindles ask for from `begin` on."""
+    count = 0
+    given: set[Given] = set()
+    requests: set[int] = set()
+    topics = {topic for topic, info in recorded.topics.items() if info.type_name in BLOCK_TYPES}
+    for message in iter_messages(recorded.path, topics):
+        block = codec_of(BLOCK_TYPES[message.type_name]).decode(message.cdr)
+        count = max(count, block.count)
+        if block.first_cycle < begin - count:
+            continue
+        is_channel = isinstance(block, ChannelBlock)
+        if is_channel:
+            requests.update(request.id for request in block.requests)
+        for command in block.commands if block.first_cycle >= begin else ():
+            known = command.command != "acknowledge" or command.arguments.get("id") in requests
+            if is_channel or (command.command in ANSWERS and known):
+                given.add((block.first_cycle, command.target, command.command, json_of(command.arguments)))
+    return given
+
+
+BLOCK_TYPES: Final[dict[str, type[ChannelBlock] | type[PlcBlock]]] = {
+    "cnc_ptp/msg/ChannelBlock": ChannelBlock,
+    "cnc_ptp/msg/PlcBlock": PlcBlock,
+}
+
+
+def by_unit(commands: Sequence[Command]) -> dict[str, list[Command]]:
     units: dict[str, list[Command]] = defaultdict(list)
     for command in commands:
         units[command.target].append(command)

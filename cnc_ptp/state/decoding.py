@@ -27,9 +27,7 @@ MISSING: Any = object()
 class Decoder:
     """The objects of one state."""
 
-    def __init__(
-        self, rows: list[Row], shapes: list[list[Any]], roots: Roots, texts: Mapping[str, str]
-    ) -> None:
+    def __init__(self, rows: list[Row], shapes: list[list[Any]], roots: Roots, texts: Mapping[str, str]) -> None:
         self._rows, self._roots, self._texts = rows, roots, texts
         self._shapes = [(kernel_class(name), names) for name, names in shapes]
         self._found: list[Any] = [MISSING] * len(rows)

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, MutableMapping
-from functools import lru_cache
+from functools import cache
 from hashlib import blake2b
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import zstandard
 
@@ -113,7 +113,7 @@ def check_sum(content: bytes) -> bytes:
     return blake2b(content, digest_size=16).digest()
 
 
-@lru_cache(maxsize=None)
+@cache
 def kernel_digest() -> bytes:
     """Of all sources that decide what a state means, compiled or not."""
     together = json.dumps(hashes(sources()), sort_keys=True)

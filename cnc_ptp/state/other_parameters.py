@@ -112,7 +112,9 @@ def same(one: Any, other: Any) -> bool:
     if one is other:
         return True
     if isinstance(one, partial) and isinstance(other, partial):
-        return same((one.func, one.args, tuple(one.keywords.items())), (other.func, other.args, tuple(other.keywords.items())))
+        return same(
+            (one.func, one.args, tuple(one.keywords.items())), (other.func, other.args, tuple(other.keywords.items()))
+        )
     if type(one) is not type(other):
         return False
     if isinstance(one, (tuple, list)):

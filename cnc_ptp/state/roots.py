@@ -5,7 +5,7 @@ from __future__ import annotations
 import enum
 import sys
 from collections.abc import Iterable, Iterator
-from functools import lru_cache
+from functools import cache
 from importlib import import_module
 from types import BuiltinFunctionType, FunctionType, MappingProxyType, ModuleType
 from typing import Any
@@ -95,7 +95,7 @@ def follow(here: Any, step: Step) -> Any:
     return here[step[0]]
 
 
-@lru_cache(maxsize=None)
+@cache
 def attribute_names(cls: type) -> tuple[str, ...]:
     """Names of the attributes that all instances may have beside those in their `__dict__`."""
     names: list[str] = []
