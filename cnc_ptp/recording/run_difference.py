@@ -91,8 +91,8 @@ def row(unit: str, name: str, mine: Any, other: Any, cycle_time: float) -> Row:
     most = int(np.nanargmax(apart)) if not np.isnan(apart).all() else 0
     cycles = mine["cycle"]
     parts_at = float(cycles[parted[0]]) * cycle_time if len(parted) else None
-    largest = [float(np.nanmax(np.abs(values))) for values in (one, two)]
-    return Row(unit, name, *largest, float(apart[most]), float(cycles[most]) * cycle_time, parts_at)
+    first, second = (float(np.nanmax(np.abs(values))) for values in (one, two))
+    return Row(unit, name, first, second, float(apart[most]), float(cycles[most]) * cycle_time, parts_at)
 
 
 def running_time(states: Any, cycle_time: float) -> float:

@@ -43,12 +43,13 @@ class Decoder:
         return self._complete(value)
 
     def _again(self, row: Row) -> Any:
-        """Its parts must have all that they lead to; nothing that is met here for the first time is made again before."""
-        return AGAIN[row[1]](*(self._complete(value) for value in row[2:]))
+        """Its parts must have all that they lead to."""
+        make: Any = AGAIN[row[1]]
+        return make(*[self._complete(value) for value in row[2:]])
 
     def _live(self, row: Row) -> Any:
         """A part of the state of an interpreter, which has come to where it was."""
-        here = self._value(row[1]).state
+        here: Any = self._value(row[1]).state
         for step in row[2]:
             here = follow(here, step)
         return here
@@ -88,7 +89,7 @@ class Decoder:
         return frozenset(self._values(row[1:]))
 
     def _named_tuple(self, row: Row) -> Any:
-        return tuple.__new__(kernel_class(row[1]), self._values(row[2:]))
+        return tuple.__new__(named_tuple_class(row[1]), self._values(row[2:]))
 
     def _member(self, row: Row) -> Any:
         cls = kernel_class(row[1])
@@ -126,7 +127,7 @@ class Decoder:
         return self._texts[row[1]]
 
     def _marked_text(self, row: Row) -> Any:
-        return str.__new__(kernel_class(row[1]), row[2])
+        return str.__new__(text_class(row[1]), row[2])
 
     # what is made empty
 
@@ -134,7 +135,7 @@ class Decoder:
         return bare_instance(self._shapes[row[1]][0])
 
     def _exception(self, row: Row) -> Any:
-        cls = kernel_class(row[1])
+        cls: Any = kernel_class(row[1])
         return cls.__new__(cls)
 
     def _empty_defaultdict(self, row: Row) -> Any:
@@ -229,6 +230,22 @@ def kernel_class(name: str) -> type:
     found = named(module, qualified)
     if not module.startswith(PACKAGE) or not isinstance(found, type):
         raise LookupError(f"{name} is no class of the kernel")
+    return found
+
+
+def named_tuple_class(name: str) -> type[tuple[Any, ...]]:
+    """As kernel_class."""
+    found = kernel_class(name)
+    if not issubclass(found, tuple):
+        raise LookupError(f"{name} is no NamedTuple")
+    return found
+
+
+def text_class(name: str) -> type[str]:
+    """As kernel_class."""
+    found = kernel_class(name)
+    if not issubclass(found, str):
+        raise LookupError(f"{name} is no text")
     return found
 
 

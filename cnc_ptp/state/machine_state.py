@@ -9,7 +9,7 @@ states of its own sources only: what an attribute means is nowhere but there.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, MutableMapping
+from collections.abc import Mapping
 from functools import cache
 from hashlib import blake2b
 from typing import Final, NamedTuple
@@ -53,7 +53,7 @@ class StateStore:
 
     def __init__(self, machine: MachineParameters) -> None:
         self._roots = Roots({"machine": machine})
-        self.texts: MutableMapping[str, str] = {}
+        self.texts: dict[str, str] = {}
 
     def encode(self, machine: OfflineMachine, *, with_plc: bool = False) -> bytes:
         """All units but the PLC, whose commands a recording has. Raises CncError 26150.

@@ -1,4 +1,4 @@
-"""Objects that are not stored but made again: programs from their text, interpreters from the start of their program."""
+"""Objects that are made again instead of stored: programs from their text, interpreters from their program's start."""
 
 from __future__ import annotations
 

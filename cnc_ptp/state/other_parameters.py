@@ -107,20 +107,23 @@ def is_value(found: Any) -> bool:
     return not is_changeable(found)
 
 
+def parts_of(found: partial[Any]) -> tuple[Any, ...]:
+    """What decides what it does."""
+    return found.func, found.args, tuple(found.keywords.items())
+
+
 def same(one: Any, other: Any) -> bool:
     """Equal values; floats to the bit."""
     if one is other:
         return True
     if isinstance(one, partial) and isinstance(other, partial):
-        return same(
-            (one.func, one.args, tuple(one.keywords.items())), (other.func, other.args, tuple(other.keywords.items()))
-        )
+        return same(parts_of(one), parts_of(other))
     if type(one) is not type(other):
         return False
     if isinstance(one, (tuple, list)):
         return len(one) == len(other) and all(map(same, one, other))
     if isinstance(one, float):
-        return one.hex() == other.hex()
+        return bool(one.hex() == other.hex())
     try:
         return bool(one == other)
     except ValueError:  # arrays

@@ -96,13 +96,21 @@ def follow(here: Any, step: Step) -> Any:
 
 
 @cache
-def attribute_names(cls: type) -> tuple[str, ...]:
+ATTRIBUTES: dict[type, tuple[str, ...]] = {}
+"""What was found for each class."""
+
+
+def attribute_names(cls: Hashable) -> tuple[str, ...]:
     """Names of the attributes that all instances may have beside those in their `__dict__`."""
+    known = ATTRIBUTES.get(cls)
+    if known is not None:
+        return known
     names: list[str] = []
     for base in cls.__mro__:
         declared = vars(base).get(COMPILED if is_compiled(base) else "__slots__", ())
         names += [declared] if isinstance(declared, str) else declared
-    return tuple(name for name in dict.fromkeys(names) if not name.startswith("__"))
+    known = ATTRIBUTES[cls] = tuple(name for name in dict.fromkeys(names) if not name.startswith("__"))
+    return known
 
 
 def attributes(found: Any) -> Iterator[tuple[str, Any]]:
