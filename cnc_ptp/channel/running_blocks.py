@@ -1,7 +1,7 @@
 """The blocks of a program that is interpreted while it runs, and what is needed to come to the same place again.
 
-An interpreter in the middle of a program cannot be stored: it stands within loops of functions. So it is made again from
-the state in which the program started, and gives as many blocks as it had given, with the same answers in between.
+An interpreter in the middle of a program cannot be stored: it stands within loops of functions. So it is made again
+from the state in which the program started, and gives as many blocks as it had given, with the same answers in between.
 """
 
 from __future__ import annotations

@@ -78,7 +78,7 @@ class OfflineMachine:
         return self._compute(with_commands=False)
 
     def changed_tick(self, commands: Mapping[str, Iterable[Command]]) -> Outputs:
-        """Computes the next block of all units with commands from outside, and with those that units give each other."""
+        """Computes the next block of all units with commands from outside and those that units give each other."""
         for name, of_unit in commands.items():
             for command in of_unit:
                 self._runners[name].command(command)

@@ -68,7 +68,8 @@ def require_same_machine(first: Recorded, second: Recorded) -> None:
     """The same units and the same cycle time."""
     units = [units_of(recorded) for recorded in (first, second)]
     if units[0] != units[1] or first.cycle_time_ns != second.cycle_time_ns:
-        texts = [f"{recorded.path} has {', '.join(known)}, {recorded.cycle_time_ns / 1e6:g} ms" for recorded, known in zip((first, second), units, strict=True)]  # fmt: skip
+        pairs = zip((first, second), units, strict=True)
+        texts = [f"{one.path} has {', '.join(known)}, {one.cycle_time_ns / 1e6:g} ms" for one, known in pairs]
         reason = f"the recordings are of different machines: {'; '.join(texts)}"
         raise CncError(OTHER_MACHINE, reason, "nothing was compared")
 

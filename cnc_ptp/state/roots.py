@@ -5,7 +5,6 @@ from __future__ import annotations
 import enum
 import sys
 from collections.abc import Iterable, Iterator
-from functools import cache
 from importlib import import_module
 from types import BuiltinFunctionType, FunctionType, MappingProxyType, ModuleType
 from typing import Any
@@ -95,12 +94,11 @@ def follow(here: Any, step: Step) -> Any:
     return here[step[0]]
 
 
-@cache
 ATTRIBUTES: dict[type, tuple[str, ...]] = {}
 """What was found for each class."""
 
 
-def attribute_names(cls: Hashable) -> tuple[str, ...]:
+def attribute_names(cls: type) -> tuple[str, ...]:
     """Names of the attributes that all instances may have beside those in their `__dict__`."""
     known = ATTRIBUTES.get(cls)
     if known is not None:
