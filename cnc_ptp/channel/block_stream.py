@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Final
+from typing import Final, NamedTuple
 
-from cnc_ptp.channel.running_blocks import RunAnswer, RunningBlocks
 from cnc_ptp.nc.awaited import awaits_path
 from cnc_ptp.nc.canonical import BUSY, CanonicalBlock
 from cnc_ptp.nc.faults import ProgramError
@@ -14,6 +14,32 @@ from cnc_ptp.nc.measuring import Touch
 
 BUFFER: Final = 1000
 """Blocks that are interpreted ahead, before the path asks for them."""
+
+
+class RunAnswer(NamedTuple):
+    """What the interpreter got to know when it had asked for so many blocks."""
+
+    asked: int
+    actual: tuple[float, ...]
+    position: tuple[float, ...]
+    timers: tuple[tuple[int, float], ...]
+    touch: Touch | None
+    override: float
+
+
+class RunSource(ABC):
+    """An interpreter that runs with the program: an iterator that is told what only the run knows."""
+
+    @abstractmethod
+    def __iter__(self) -> RunSource: ...
+
+    @abstractmethod
+    def __next__(self) -> CanonicalBlock:
+        """Raises ProgramError, StopIteration."""
+
+    @abstractmethod
+    def give(self, answer: RunAnswer) -> None:
+        """What the next blocks may read."""
 
 
 class BlockStream:
@@ -29,7 +55,7 @@ class BlockStream:
 
     def __init__(
         self,
-        blocks: Iterator[CanonicalBlock] | RunningBlocks,
+        blocks: Iterator[CanonicalBlock] | RunSource,
         total: int | None,
         blocks_per_cycle: int = 0,
         place: Callable[[], int] | None = None,
@@ -57,9 +83,9 @@ class BlockStream:
         return cls(iter(blocks), len(blocks))
 
     @property
-    def running(self) -> RunningBlocks | None:
+    def running(self) -> RunSource | None:
         """The interpreter that runs with the program, if one does."""
-        return self._blocks if isinstance(self._blocks, RunningBlocks) else None
+        return self._blocks if isinstance(self._blocks, RunSource) else None
 
     @property
     def fill(self) -> float:

@@ -675,7 +675,8 @@ class ChannelUnit(Unit):
     @property
     def interpreter(self) -> RunningBlocks | None:
         """That of a program that is interpreted while it runs."""
-        return self._sequence.stream.running
+        running = self._sequence.stream.running
+        return running if isinstance(running, RunningBlocks) else None
 
     @property
     def runs_out(self) -> bool:

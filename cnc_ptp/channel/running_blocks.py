@@ -7,35 +7,22 @@ from the state in which the program started, and gives as many blocks as it had 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import Final
 
+from cnc_ptp.channel.block_stream import RunAnswer, RunSource
+from cnc_ptp.channel.program_check import ProgramCheck, ProgramState
 from cnc_ptp.channel.program_start import ProgramStart
 from cnc_ptp.nc.block_search import StartPoint
 from cnc_ptp.nc.canonical import CanonicalBlock
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.sections import Program
-from cnc_ptp.nc.measuring import Touch
-
-if TYPE_CHECKING:
-    from cnc_ptp.channel.program_check import ProgramCheck, ProgramState
 
 MOST_ANSWERS: Final = 100_000
 """Waits of one program that are remembered. One that has more cannot be stored any more, or it would need ever more
 memory."""
 
 
-class RunAnswer(NamedTuple):
-    """What the interpreter got to know when it had asked for so many blocks."""
-
-    asked: int
-    actual: tuple[float, ...]
-    position: tuple[float, ...]
-    timers: tuple[tuple[int, float], ...]
-    touch: Touch | None
-    override: float
-
-
-class RunningBlocks:
+class RunningBlocks(RunSource):
     """An iterator over the blocks of one start of a program.
 
     state       of the interpreter; it changes with each block

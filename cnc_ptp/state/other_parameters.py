@@ -80,7 +80,7 @@ class ParameterChange:
 
 def refuse_put(place: str) -> Any:
     def put(_value: Any) -> None:
-        raise CncError(OTHER_PARTS, f"other parameters would give {place} other parts", "nothing was computed")
+        raise CncError(OTHER_PARTS, f"other parameters would give {place} another kind of part", "nothing was computed")
 
     return put
 
