@@ -20,7 +20,7 @@ COMMANDS = (
     "simulate", "run", "status", "jog", "check", "explain", "format", "replay", "report", "plot", "params", "identify",
     "circle", "curve", "lists",
 )  # fmt: skip
-"""Executables of their own. Not `do`, a word of the shell, nor `watch` and `init`, which every Linux has."""
+"""Executables of their own. Not `do` and `export`, words of the shell, nor `watch` and `init`, which Linux has."""
 NODES = ("nc_channel", "axis", "spindle", "plc_bridge", "clock", "recorder", "player")
 
 
@@ -198,6 +198,7 @@ setup(
         share("examples/lists", "examples/lists/*.lis"),
     ],
     python_requires=">=3.11,<3.14",
+    extras_require={"data": ["pandas>=2.2,<4", "pyarrow>=18"]},  # tables and Parquet of recordings
     entry_points={"console_scripts": console_scripts()},
     zip_safe=False,
 )

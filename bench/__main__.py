@@ -27,6 +27,7 @@ TOPICS = (
     "paths",
     "streaming",
     "recording",
+    "columns",
     "offline",
     "graph",
     "service",

@@ -14,6 +14,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "test" / "support"))
 
+from curves import feed
 from path_bound import bound_of
 
 from bench.figures import Effort, Figure, ShowProgress, fixed_work, medians_of, stopwatch
@@ -106,12 +107,7 @@ def planned(parts: Iterable[PathPart], count: int, cycle: float) -> int:
     """Cells and velocity of the parts, and the motion along the path in `count` cycles at a time; number of cycles."""
     ahead, waiting, cycles = LookAhead(1.0, 0.0), iter(parts), 0
     while not ahead.done:
-        while ahead.wants:
-            part = next(waiting, None)
-            if part is None:
-                ahead.closed = True
-                break
-            ahead.append(part)
+        feed(ahead, waiting)
         for u, v, a, j in ahead.step(count, cycle):
             begin, part = ahead.locate(u)
             part.geometry.evaluate(u - begin, v, a, j)

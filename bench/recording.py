@@ -31,7 +31,7 @@ def run_of_blocks(blocks: int) -> Run:
     return [unit_blocks(COUNT * index) for index in range(blocks)]
 
 
-def unit_blocks(first: int) -> list[tuple[str, CycleBlock]]:
+def unit_blocks(first: int, axes: tuple[str, ...] = AXES) -> list[tuple[str, CycleBlock]]:
     """The blocks of all units from cycle `first` on."""
 
     def wave(factor: float) -> list[float]:
@@ -43,13 +43,13 @@ def unit_blocks(first: int) -> list[tuple[str, CycleBlock]]:
     zero, on, off = [0] * COUNT, [True] * COUNT, [False] * COUNT
 
     def setpoints(factor: float) -> list[float]:
-        return [value for axis in range(len(AXES)) for value in wave(factor + axis)]
+        return [value for axis in range(len(axes)) for value in wave(factor + axis)]
 
     channel = ChannelBlock(
         first,
         COUNT,
         path_active=True,
-        axes=list(AXES),
+        axes=list(axes),
         set_position=setpoints(1.0),
         set_velocity=setpoints(2.0),
         set_acceleration=setpoints(3.0),
@@ -64,7 +64,7 @@ def unit_blocks(first: int) -> list[tuple[str, CycleBlock]]:
         error_id=zero,
     )
     blocks: list[tuple[str, CycleBlock]] = [("plc", PlcBlock(first, COUNT, first)), ("channel", channel)]
-    for index, axis in enumerate(AXES):
+    for index, axis in enumerate(axes):
         moving = [wave(1.0 + index + 0.1 * column) for column in range(8)]
         rest = [flat(0.0), flat(0.0), flat(0.0), flat(0.0), flat(0.0), flat(0.0), flat(100.0)]
         blocks.append((axis, AxisBlock(first, COUNT, *moving, *rest, [5] * COUNT, [256] * COUNT, zero)))

@@ -331,6 +331,36 @@ def report_command(**options: Any) -> None:
     sys.exit(report(**options))
 
 
+@main.command("export")
+@click.argument("recording", type=click.Path())
+@click.option("--topic", required=True, help="Topic to write: /x/state, /events, /commands ...")
+@click.option("--fields", callback=words, multiple=True, help="Fields of it; without them all: set_position,error_id")
+@click.option("--from", "begin", type=float, help="Seconds of the recording; without it from its start.")
+@click.option("--to", "end", type=float, help="Seconds of the recording; without it to its end.")
+@click.option("-o", "--output", required=True, type=click.Path(dir_okay=False), help="File: .csv, .parquet or .npz.")
+def export_command(**options: Any) -> None:
+    """Write a topic of a recording as a table: CSV, Parquet or NumPy.
+
+    RECORDING may be a folder with a recording in several files. The first column is the time in s.
+    """
+    from cnc_ptp.commands.look.export import export
+
+    sys.exit(export(**options))
+
+
+@main.command("recover")
+@RECORDING
+@click.option("-o", "--output", required=True, type=click.Path(dir_okay=False), help="MCAP file to write.")
+def recover_command(**options: Any) -> None:
+    """Save what is whole of a damaged or cut recording in a new file.
+
+    Says what is lost. The recording itself is unchanged.
+    """
+    from cnc_ptp.commands.look.recover import recover_file
+
+    sys.exit(recover_file(**options))
+
+
 def program_options(function: Callable[..., Any]) -> Callable[..., Any]:
     """Options of a plot that are for an NC program alone."""
     for option in (

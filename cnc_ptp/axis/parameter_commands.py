@@ -77,12 +77,11 @@ class ParameterCommands:
     def _check(self, cycle: int, change: Change, view: AxisParameters) -> None:
         """Raises for what drive or channel have taken over at their start, and for soft limits beside the axis."""
         axis, number = self._axis, change.declaration.id
+        what = f"{number} ({change.declaration.name}) cannot be written at run time"
         if number in OF_THE_PATH and axis.parameters.channel:
-            what = f"{number} ({change.declaration.name}) cannot be written at run time"
             why = f"channel {axis.parameters.channel}, which has the axis, has taken it over at start-up"
             axis.refuse(WRITE, CHANNEL_HAS_IT, f"{what}, {why}", parameter=number)
         if drive_part(view.control) != drive_part(axis.parameters.control):
-            what = f"{number} ({change.declaration.name}) cannot be written at run time"
             axis.refuse(WRITE, DRIVE_HAS_IT, f"{what}, the drive has taken it over at start-up", parameter=number)
         position = axis.setpoint(cycle)[0] - axis.checks.coordinate_shift
         low, high = view.soft_limit_negative, view.soft_limit_positive

@@ -136,14 +136,15 @@ class OfflineMachine:
     def _watch_progress(self, plc: PlcBlock, outputs: Outputs) -> None:
         unit = self._runners[PLC].unit
         with_program = isinstance(unit, PlcUnit) and unit.program_runs
-        waits = self.waits(outputs) if plc.scenario_done and not plc.commands else None
+        obeyed = any(record.accepted for output in outputs.values() for record in output.records)
+        waits = self.waits(outputs) if plc.scenario_done and not obeyed else None
         if with_program and waits == []:
             waits = ["everything is at a standstill"]  # the PLC in a file has not said that the run may end
         reason = "; ".join(waits or ())
         self._stuck_cycles = self._stuck_cycles + plc.count if reason else 0
         if self._stuck_cycles >= round((PLC_TIME if with_program else STUCK_TIME) / self._cycle_time):
             self._stuck_cycles = 0
-            but = f"the PLC has commanded nothing for {PLC_TIME:g} s" if with_program else "the scenario is finished"
+            but = f"no command was accepted for {PLC_TIME:g} s" if with_program else "the scenario is finished"
             self._runners[PLC].command(Command(PLC, "abort", {"reason": f"{reason}, but {but}"}))
 
     def waits(self, outputs: Outputs) -> list[str] | None:

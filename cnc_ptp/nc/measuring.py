@@ -41,6 +41,12 @@ def measuring_run(channel: Channel, state: ModalState, block: NcBlock, code: GCo
     return skip(channel, state, block, code)
 
 
+def require_words(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> None:
+    """A block without any word has no motion, so that nothing else looks at it. Raises ProgramError 21100."""
+    if not block.words:
+        raise faults.MEASURING_WITHOUT_AXIS.at(block.source, block.source.column(code.name), g=code.name)
+
+
 def skip(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> LinearMove:
     """G31: the same, with an exact stop whatever G64 says."""
     column = block.source.column(code.name)

@@ -113,7 +113,7 @@ _G_CODES = (
     GCode(98, "software limits", function=codes.software_limit, takes_axes=True),
     GCode(99, "software limits", function=codes.software_limit, takes_axes=True),
     GCode(74, "path", motion=spindles.homing, modal=False, own_words=True, spindle=True),
-    GCode(100, "path", motion=measuring.measuring_run, modal=False),
+    GCode(100, "path", motion=measuring.measuring_run, modal=False, prepare=measuring.require_words),
     GCode(106, "path", later="measuring without a stop at the signal"),
     GCode(107, "edge", later="edge banding"),
     GCode(108, "edge", later="edge banding"),

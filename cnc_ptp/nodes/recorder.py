@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sys
 import time
@@ -43,13 +44,15 @@ from cnc_ptp.nodes.topics import (
 )
 from cnc_ptp.parameters import MachineParameters, machine_text, read_machine
 from cnc_ptp.protocol.blocks import CycleBlock, CycleTick, Event, Severity
+from cnc_ptp.recording.mcap_file import NOT_WRITTEN
 from cnc_ptp.recording.trigger import Condition, make_recording
-from cnc_ptp.recording.writer import Recording
+from cnc_ptp.recording.writer import NoRecording, Recording
 from cnc_ptp.wire.block_codec import head_of, with_plain_header
 from cnc_ptp.wire.ticks import Tick, decode_tick
 
 NOT_WRITABLE = 26113
 BLOCKS_MISSING = 26114
+ENDED_EARLY = 26015
 QUIET = 0.2
 """Seconds without a message after which a recorder that is to end has seen everything."""
 LOOK_PERIOD = 0.05
@@ -86,7 +89,7 @@ class RecorderNode(PollingNode):
         self._tick_ns = 0
         self._last_tick = -1
         """First cycle of the newest tick."""
-        self._recording: Recording | None = None
+        self._recording: Recording | NoRecording | None = None
         self._early: list[Any] = []
         self._units = unit_kinds(machine)
         self._next_cycle = dict.fromkeys(self._units, 0)
@@ -98,7 +101,7 @@ class RecorderNode(PollingNode):
         self._handover = handover
         self._needed = [] if handover else [*self._subscribe_to_blocks()]
         if handover:
-            handover.on_tick(self._guarded(self._on_tick), self._look)
+            handover.on_tick(self._guarded(self._on_tick), self._guarded(self._look))
             for unit in self._units:
                 handover.on_block(unit, self._guarded(partial(self._take_block, unit)))
         self.create_subscription(msg.Event, EVENT, self._guarded(self._on_event), EVENTS)
@@ -131,13 +134,27 @@ class RecorderNode(PollingNode):
             try:
                 callback(*arguments)
             except CncError as error:
-                self.failure = self.failure or error
+                if error.number == NOT_WRITTEN and isinstance(self._recording, Recording):
+                    self._go_on_without(self._recording, error)
+                else:
+                    self.failure = self.failure or error
 
         return call
 
+    def _go_on_without(self, recording: Recording, error: CncError) -> None:
+        """The disk is full: the recording gets its end, if there is room for it, and the run continues."""
+        self._recording = NoRecording(recording.stamps)
+        with contextlib.suppress(CncError):
+            recording.close()
+        cycle = max(0, self._last_tick)
+        text = f"recorder: {error.reason}; the run continues without it, about cycle {cycle} and later are missing"
+        event = Event(cycle, RECORDER, Severity.ERROR, ENDED_EARLY, text)
+        stamp = convert.time_message(recording.stamps.at(cycle))
+        self._event_publisher.publish(convert.event_to_message(event, stamp))
+
     def destroy_node(self) -> None:
         if self._recording is not None:
-            self._recording.close()
+            self._guarded(self._recording.close)()
         super().destroy_node()
 
     @property
@@ -229,7 +246,7 @@ class RecorderNode(PollingNode):
             record()
 
     @property
-    def _recorded(self) -> Recording:
+    def _recorded(self) -> Recording | NoRecording:
         assert self._recording is not None
         return self._recording
 

@@ -1,7 +1,7 @@
 """Errors of a machine file: one number per kind, one line per problem, all problems in one exception."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from cnc_ptp.errors import CncError
 
@@ -47,6 +47,10 @@ class Place(NamedTuple):
         return f"{self.file}:{self.line}:{self.column}"
 
 
+AT_RUN_TIME = Place("", 0, 0)
+"""Of a value that a command has written."""
+
+
 class Problem(NamedTuple):
     """One thing that is wrong, and where."""
 
@@ -58,6 +62,19 @@ class Problem(NamedTuple):
         return f"{self.place}: {self.text}; {EFFECT}"
 
 
+class Numbered(Protocol):
+    """One thing that is wrong; its text is a line."""
+
+    @property
+    def error_id(self) -> int: ...
+
+
+def one_line_each(problems: Sequence[Numbered]) -> str:
+    """The text of an error that has several problems: the number of the first is its own, the others begin theirs."""
+    first, *others = problems
+    return "\n".join([str(first), *(f"P-ERR-{problem.error_id} {problem}" for problem in others)])
+
+
 class ParameterError(CncError):
     """A machine file that no node accepts; `problems` has all of them, in the order of the file.
 
@@ -67,9 +84,7 @@ class ParameterError(CncError):
 
     def __init__(self, problems: Sequence[Problem]) -> None:
         self.problems = tuple(sorted(problems, key=lambda problem: problem.place))
-        first, *others = self.problems
-        lines = [str(first), *(f"P-ERR-{problem.error_id} {problem}" for problem in others)]
-        super().__init__(first.error_id, "\n".join(lines))
+        super().__init__(self.problems[0].error_id, one_line_each(self.problems))
 
     def __reduce__(self) -> tuple[type["ParameterError"], tuple[tuple[Problem, ...]]]:
         return type(self), (self.problems,)

@@ -1,7 +1,8 @@
 """Machine file -> MachineParameters: read, check each value and values against each other, or report all problems."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from cnc_ptp.parameters import errors
@@ -59,10 +60,15 @@ def read_text(path: Path, place: Place, what: str) -> str:
         raise ParameterError([Problem(errors.UNREADABLE, place, f"{what} cannot be read, {reason}")]) from error
 
 
-def load_machine(text: str, file: str) -> MachineParameters:
-    """The machine that the text of `machine_text` describes; `file` is for messages. Raises ParameterError."""
+def load_machine(text: str, file: str, origin: Callable[[Place], Place] | None = None) -> MachineParameters:
+    """The machine that the text of `machine_text` describes; `file` is for messages. Raises ParameterError.
+
+    `origin` gives the place that messages name instead of one in the text, if that was made of other files.
+    """
     text, files = split_files(text)
     machine, sets, problems = read_parameters(text, file)
+    if origin:
+        sets = {node: placed(parameters, origin) for node, parameters in sets.items()}
     for node, parameters in sets.items():
         if parameters.kind == "channel":
             sets[node] = with_tables(parameters, sets, files, problems)
@@ -70,6 +76,12 @@ def load_machine(text: str, file: str) -> MachineParameters:
     if problems:
         raise ParameterError(problems)
     return machine_view(machine, sets, tuple(machine_notices(machine, sets)), Path(file).parent)
+
+
+def placed(parameters: ParameterSet, origin: Callable[[Place], Place]) -> ParameterSet:
+    """The parameters with the places where they come from."""
+    given = {name: entry._replace(place=origin(entry.place)) for name, entry in parameters.given.items()}
+    return replace(parameters, given=given, place=origin(parameters.place))
 
 
 def examine_machine(text: str, file: str) -> tuple[list[Problem], list[Notice]]:

@@ -307,6 +307,9 @@ TYPES = {
     "source": str,
 }
 
+TYPE_TEXTS = {"integer": "an integer", "rows": "a list of rows", "files": "texts by file name"}
+"""What an argument must be, where its kind with an article is no English."""
+
 
 def current_names(kind: str, command: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
     """The arguments with today's names; one that is given under both names keeps the former, and is refused then."""
@@ -382,14 +385,14 @@ def _check_argument(where: str, name: str, argument: Argument, value: Any) -> No
     if argument.lenient:
         return
     is_type = isinstance(value, TYPES[argument.kind])  # type: ignore[arg-type]
-    article = "an" if argument.kind == "integer" else "a"
+    wanted = TYPE_TEXTS.get(argument.kind, f"a {argument.kind}")
     if not is_type or (isinstance(value, bool) and argument.kind != "switch"):
-        raise _bad(where, name, f"{name} = {value!r} is not {article} {argument.kind}")
+        raise _bad(where, name, f"{name} = {value!r} is not {wanted}")
     if argument.kind == "number" and not is_finite(value):
         shown = value if isinstance(value, float) else "an integer that long"
         raise _bad(where, name, f"{name} = {shown} is not finite")
     if argument.choices and value not in argument.choices:
-        allowed = " or ".join(argument.choices)
+        allowed = " or ".join(filter(None, (", ".join(argument.choices[:-1]), argument.choices[-1])))
         raise _bad(where, name, f"{name} = '{value}' is not {allowed}")
 
 

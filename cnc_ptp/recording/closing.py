@@ -10,8 +10,7 @@ from mcap.writer import MCAP0_MAGIC
 
 from cnc_ptp.recording.bag import RECORD
 from cnc_ptp.recording.mcap_chunks import McapRecords, MessageRun, RawRecord
-from cnc_ptp.recording.mcap_file import RECORD_PREFIX, Contents, McapFile, count_chunk
-from cnc_ptp.recording.writer import METADATA, MISSING
+from cnc_ptp.recording.mcap_file import METADATA, MISSING, RECORD_PREFIX, Contents, McapFile, count_chunk
 
 
 def close_cut(path: str | Path) -> str:

@@ -61,46 +61,11 @@ class MessageRun(NamedTuple):
         return self.rows[:, HEAD_SIZE:]
 
 
-class McapRecords:
-    """The records of a file in order; after iteration `complete` and `missing` say what is missing, if anything.
-
-    Raises CncError 26001 (cannot be opened), 26002 (not an MCAP file), 26003 (corrupt: where, why).
-    """
+class RecordReader:
+    """Reads what is in records of the file `path`; what does not fit raises CncError 26003 with its place."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self.complete = False
-        self.missing = ""
-        try:
-            self._data = memoryview(path.read_bytes())
-        except OSError as error:
-            raise CncError(
-                UNREADABLE, f"recording {path}: cannot be opened: {error.strerror}", "nothing was read, check the path"
-            ) from error
-        self._data_ended = False
-        self._require_magic()
-        self._cut_off = bytes(self._data[-len(MCAP0_MAGIC) :]) != MCAP0_MAGIC or len(self._data) == len(MCAP0_MAGIC)
-
-    def __iter__(self) -> Iterator[RawRecord]:
-        data, offset, end = self._data, len(MCAP0_MAGIC), len(self._data)
-        while offset < end:
-            if end - offset < RECORD_PREFIX.size:
-                return self._stop(offset, f"{end - offset} bytes of a record head follow")
-            opcode, length = RECORD_PREFIX.unpack_from(data, offset)
-            self._require_known(offset, opcode)
-            start = offset + RECORD_PREFIX.size
-            if length > end - start:
-                return self._stop(
-                    offset, f"a record of {length} bytes begins there, {end - start} bytes of it are present"
-                )
-            record = RawRecord(offset, opcode, data[start : start + length])
-            yield record
-            offset = start + length
-            if opcode == Opcode.DATA_END:
-                self._check_data_crc(record)
-            elif opcode == Opcode.FOOTER:
-                return self._finish(record, offset)
-        return self._stop(offset, "the summary is missing")
 
     def parse(self, read: Callable[[ReadDataStream], Record], record: RawRecord) -> Record:
         """The record as read by a record class of the library."""
@@ -152,19 +117,15 @@ class McapRecords:
                 yield self.parse(Channel.read, inner)
             offset += size
 
-    def crc_up_to(self, offset: int) -> int:
-        """CRC of the file before `offset`."""
-        return zlib.crc32(self._data[:offset])
-
     def corrupt(self, offset: int, reason: str) -> CncError:
         return CncError(
             CORRUPT,
             f"recording {self.path}: corrupt at offset {offset}: {reason}",
-            "nothing was read, take an intact copy of the file or save what is whole with 'mcap recover'",
+            "nothing was read, take an intact copy of the file or save what is whole with 'cnc_ptp recover'",
         )
 
-    def _require_magic(self) -> None:
-        begin = bytes(self._data[: len(MCAP0_MAGIC)])
+    def require_magic(self, begin: bytes) -> None:
+        """Raises CncError 26002 unless a file with this begin is an MCAP file."""
         if begin != MCAP0_MAGIC:
             text, magic = (content.decode(errors="replace") for content in (begin, MCAP0_MAGIC))
             raise CncError(
@@ -172,6 +133,55 @@ class McapRecords:
                 f"recording {self.path}: not an MCAP file: it begins with {text!r} instead of {magic!r}",
                 "nothing was read, give a file that cnc_ptp or 'ros2 bag record --storage mcap' has written",
             )
+
+    def unreadable(self, error: OSError) -> CncError:
+        return CncError(
+            UNREADABLE, f"recording {self.path}: cannot be opened: {error.strerror}", "nothing was read, check the path"
+        )
+
+
+class McapRecords(RecordReader):
+    """The records of a file in order; after iteration `complete` and `missing` say what is missing, if anything.
+
+    Raises CncError 26001 (cannot be opened), 26002 (not an MCAP file), 26003 (corrupt: where, why).
+    """
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(path)
+        self.complete = False
+        self.missing = ""
+        try:
+            self._data = memoryview(path.read_bytes())
+        except OSError as error:
+            raise self.unreadable(error) from error
+        self._data_ended = False
+        self.require_magic(bytes(self._data[: len(MCAP0_MAGIC)]))
+        self._cut_off = bytes(self._data[-len(MCAP0_MAGIC) :]) != MCAP0_MAGIC or len(self._data) == len(MCAP0_MAGIC)
+
+    def __iter__(self) -> Iterator[RawRecord]:
+        data, offset, end = self._data, len(MCAP0_MAGIC), len(self._data)
+        while offset < end:
+            if end - offset < RECORD_PREFIX.size:
+                return self._stop(offset, f"{end - offset} bytes of a record head follow")
+            opcode, length = RECORD_PREFIX.unpack_from(data, offset)
+            self._require_known(offset, opcode)
+            start = offset + RECORD_PREFIX.size
+            if length > end - start:
+                return self._stop(
+                    offset, f"a record of {length} bytes begins there, {end - start} bytes of it are present"
+                )
+            record = RawRecord(offset, opcode, data[start : start + length])
+            yield record
+            offset = start + length
+            if opcode == Opcode.DATA_END:
+                self._check_data_crc(record)
+            elif opcode == Opcode.FOOTER:
+                return self._finish(record, offset)
+        return self._stop(offset, "the summary is missing")
+
+    def crc_up_to(self, offset: int) -> int:
+        """CRC of the file before `offset`."""
+        return zlib.crc32(self._data[:offset])
 
     def _require_known(self, offset: int, opcode: int) -> None:
         if opcode not in KNOWN_OPCODES and opcode < FIRST_PRIVATE_OPCODE:

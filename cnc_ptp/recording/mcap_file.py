@@ -3,13 +3,15 @@
 `mcap.writer.Writer` takes one message a call (4 µs). Here a call takes any number of messages of equal size, as rows of
 bytes with room for the record head in front; all other records are written by the library's record classes. Records and
 their order follow the specification at mcap.dev/spec: in a chunk the messages are topic by topic, its message indexes
-give their order in time.
+give their order in time. Chunks of several topics may be of the same time.
 """
 
 from __future__ import annotations
 
+import contextlib
 import struct
 import zlib
+from collections import deque
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -44,6 +46,10 @@ from cnc_ptp.recording.bag import RECORD, bag_information, forget_beside, metada
 from cnc_ptp.wire.layout import Bytes
 
 NOT_WRITTEN = 26007
+METADATA = "cnc_ptp"
+"""Name of our metadata record."""
+MISSING = "missing"
+"""Its key for what a recording that could not be written or closed does not have."""
 
 Times = npt.NDArray[np.uint64]
 
@@ -79,9 +85,9 @@ class Contents:
 class McapFile:
     """An MCAP file of the ROS 2 profile being written.
 
-    A closed chunk is compressed by a thread of its own (outside the interpreter lock) while the next one fills; then it
-    is written and handed to the operating system immediately. All methods raise CncError 26007 once the file could not
-    be written; the chunks before that moment stay readable.
+    Closed chunks are compressed by a thread of its own (outside the interpreter lock) while the next ones fill; then
+    they are written and handed to the operating system immediately. All methods raise CncError 26007 once the file
+    could not be written; it is cut back to the last whole record, and `close` still tries to give it a summary.
     """
 
     def __init__(self, path: Path, level: int = 1, *, found: Contents | None = None) -> None:
@@ -98,11 +104,14 @@ class McapFile:
         self._attachment_indexes = contents.attachment_indexes
         self._metadata_indexes = contents.metadata_indexes
         self._chunk = _OpenChunk()
-        self._closed_chunk: tuple[_OpenChunk, Future[tuple[bytes, int]]] | None = None
+        self._closed_chunks: deque[tuple[_OpenChunk, Future[tuple[bytes, int]]]] = deque()
         self._worker = ThreadPoolExecutor(max_workers=1, thread_name_prefix="recording")
         self._failure: CncError | None = None
+        self._pending = bytearray()
+        self._whole = self._offset, self._crc
+        """End of the last record that was handed over, and the CRC up to it."""
         try:
-            self._stream = path.open("r+b" if found else "wb")
+            self._stream = path.open("r+b" if found else "wb", buffering=0)
             if found:
                 self._stream.seek(found.end)
                 self._stream.truncate()
@@ -116,8 +125,13 @@ class McapFile:
             self._record(Header("ros2", f"cnc_ptp {LIBRARY_IDENTIFIER}"))
             self._flush()
 
+    @property
+    def failed(self) -> bool:
+        """The file could not be written."""
+        return self._failure is not None
+
     def attachment(self, name: str, media_type: str, data: bytes, log_time: int) -> None:
-        self.finish_chunk()
+        self.finish_chunks()
         start = self._offset
         self._record(Attachment(create_time=0, log_time=log_time, name=name, media_type=media_type, data=data))
         self._attachment_indexes.append(
@@ -127,7 +141,7 @@ class McapFile:
         self._flush()
 
     def metadata(self, name: str, values: dict[str, str]) -> None:
-        self.finish_chunk()
+        self.finish_chunks()
         start = self._offset
         self._record(Metadata(name, values))
         self._metadata_indexes.append(MetadataIndex(start, self._offset - start, name))
@@ -172,24 +186,27 @@ class McapFile:
         self._chunk.add_messages(channel_id, rows, times)
 
     def close_chunk(self) -> None:
-        """Closes the chunk being filled and writes the one before; an empty chunk is left open."""
-        self.finish_chunk()
+        """Closes the chunk being filled, which is compressed now; an empty chunk is left open."""
         chunk = self._chunk
         if chunk.message_count:
             self._chunk = _OpenChunk()
-            self._closed_chunk = chunk, self._worker.submit(self._compress, chunk)
+            self._closed_chunks.append((chunk, self._worker.submit(self._compress, chunk)))
 
     @property
-    def chunk_ready(self) -> bool:
-        """A closed chunk has been compressed and waits to be written."""
-        return self._closed_chunk is not None and self._closed_chunk[1].done()
+    def chunks_ready(self) -> bool:
+        """All closed chunks have been compressed and wait to be written."""
+        return bool(self._closed_chunks) and self._closed_chunks[-1][1].done()
 
-    def finish_chunk(self) -> None:
-        """Returns when the last closed chunk has been handed to the operating system."""
-        if self._closed_chunk is None:
-            return
-        (chunk, compression), self._closed_chunk = self._closed_chunk, None
-        compressed, crc = compression.result()
+    def finish_chunks(self) -> None:
+        """Returns when all closed chunks have been handed to the operating system."""
+        try:
+            while self._closed_chunks:
+                chunk, compression = self._closed_chunks.popleft()
+                self._write_chunk(chunk, *compression.result())
+        finally:
+            self._closed_chunks.clear()  # what cannot be written is lost
+
+    def _write_chunk(self, chunk: _OpenChunk, compressed: bytes, crc: int) -> None:
         first, last = chunk.time_range()
         start = self._offset
         self._record(Chunk("zstd", compressed, last, first, crc, chunk.size))
@@ -215,18 +232,37 @@ class McapFile:
         count_chunk(self.statistics, chunk.message_count, first, last)
 
     def close(self) -> None:
-        """Writes the last chunk and the summary, closes the file, and writes the metadata of rosbag2 (bag)."""
+        """Writes the last chunk and the summary, closes the file, and writes the metadata of rosbag2 (bag).
+
+        After a failure: the summary of what is in the file, if there is room for it.
+        """
+        failure: CncError | None = None
         try:
-            self.close_chunk()
-            self.finish_chunk()
-            information = bag_information(self.path.name, self.statistics, self._channels, self._schemas)
-            self.metadata(RECORD, {"serialized_metadata": metadata_text(information)})
-            self._record(DataEnd(self._crc))
-            self._write_summary()
-            self._flush()
+            try:
+                self.close_chunk()
+                self.finish_chunks()
+            except CncError as error:
+                failure, self._failure = error, None
+                self.metadata(METADATA, {MISSING: f"{error.reason}; what came after that is missing"})
+            self._write_end()
+        except CncError as error:
+            failure = failure or error
         finally:
             self._worker.shutdown()
             self._close_stream()
+        if failure is not None:
+            raise failure
+
+    def _write_end(self) -> None:
+        information = bag_information(self.path.name, self.statistics, self._channels, self._schemas)
+        notes = {"serialized_metadata": metadata_text(information)}
+        start = self._offset
+        self._record(Metadata(RECORD, notes))
+        self._metadata_indexes.append(MetadataIndex(start, self._offset - start, RECORD))
+        self.statistics.metadata_count += 1
+        self._record(DataEnd(self._crc))
+        self._write_summary()
+        self._flush()
         write_beside(self.path, information)
 
     def __enter__(self) -> McapFile:
@@ -286,18 +322,22 @@ class McapFile:
     def _write(self, data: bytes) -> None:
         if self._failure is not None:
             raise self._failure
-        try:
-            self._stream.write(data)
-        except OSError as error:
-            raise self._failed(error) from error
+        self._pending += data
         self._offset += len(data)
         self._crc = zlib.crc32(data, self._crc)
 
     def _flush(self) -> None:
+        """Hands whole records to the operating system."""
         try:
+            with memoryview(self._pending) as pending:
+                written = 0
+                while written < len(pending):
+                    written += self._stream.write(pending[written:]) or 0
             self._stream.flush()
         except OSError as error:
             raise self._failed(error) from error
+        self._pending.clear()
+        self._whole = self._offset, self._crc
 
     def _close_stream(self) -> None:
         try:
@@ -306,7 +346,16 @@ class McapFile:
             if self._failure is None:
                 raise self._failed(error) from error
 
+    def _cut_back(self) -> None:
+        """To the last whole record: what did not fit is forgotten."""
+        self._pending.clear()
+        self._offset, self._crc = self._whole
+        with contextlib.suppress(OSError):
+            self._stream.seek(self._offset)
+            self._stream.truncate()
+
     def _failed(self, error: OSError) -> CncError:
+        self._cut_back()
         self._failure = CncError(
             NOT_WRITTEN,
             f"recording {self.path}: cannot be written at offset {self._offset}: {error.strerror}",

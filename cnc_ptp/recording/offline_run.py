@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from types import TracebackType
 
+from cnc_ptp.errors import CncError
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import CycleTick
 from cnc_ptp.protocol.unit import PLC, Unit
 from cnc_ptp.recording.checkpoints import CHECKPOINT_SECONDS, Checkpoints
+from cnc_ptp.recording.mcap_file import NOT_WRITTEN
 from cnc_ptp.recording.trigger import Condition, TriggeredRecording, make_recording
 from cnc_ptp.recording.writer import Recording
 
@@ -17,8 +20,11 @@ from cnc_ptp.recording.writer import Recording
 class OfflineRun:
     """The run of an offline machine, with a recording if one is wanted; it is closed at the end of a `with` block.
 
-    Raises CncError 26007 where the recording cannot be written.
+    Raises CncError 26007 where the recording cannot be begun. When it cannot be continued the run continues without it;
+    `failure` says so.
     """
+
+    failure: CncError | None = None
 
     def __init__(
         self,
@@ -59,14 +65,26 @@ class OfflineRun:
 
     def close(self) -> None:
         if self._recording is not None:
-            self._recording.close()
+            with self._going_on():
+                self._recording.close()
 
     def _recorded(self, outputs: Outputs) -> Outputs:
-        if self._recording is not None:
-            write(self._recording, outputs)
-        if self._checkpoints is not None and not self.waits_for_trigger:
-            self._checkpoints.watch(self.machine)
+        if self._recording is not None and self.failure is None:
+            with self._going_on():
+                write(self._recording, outputs)
+                if self._checkpoints is not None and not self.waits_for_trigger:
+                    self._checkpoints.watch(self.machine)
         return outputs
+
+    @contextmanager
+    def _going_on(self) -> Iterator[None]:
+        """Keeps the first error of a disk that is full."""
+        try:
+            yield
+        except CncError as error:
+            if error.number != NOT_WRITTEN:
+                raise
+            self.failure = self.failure or error
 
     def __enter__(self) -> OfflineRun:
         return self

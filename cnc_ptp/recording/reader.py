@@ -18,7 +18,8 @@ from cnc_ptp.protocol.blocks import CommandRecord, Event, read_values
 from cnc_ptp.protocol.event_values import read_event_values
 from cnc_ptp.recording.bag import QOS
 from cnc_ptp.recording.mcap_chunks import McapRecords, MessageRun, RawRecord
-from cnc_ptp.recording.writer import CHECKPOINT, CHECKPOINT_TEXT, MACHINE_FILE, METADATA, MISSING
+from cnc_ptp.recording.mcap_file import METADATA, MISSING
+from cnc_ptp.recording.writer import CHECKPOINT, CHECKPOINT_TEXT, MACHINE_FILE
 from cnc_ptp.wire.layout import Layout, Records, fixed_layout
 from cnc_ptp.wire.schemas import full_name, parse_schema
 

@@ -76,9 +76,13 @@ def _between(rows: Records, low: float, high: float) -> Records:
     return rows[(rows["cycle"] >= low) & (rows["cycle"] <= high)]
 
 
+def asked_time(begin: float | None, end: float | None) -> str:
+    return f"{'the start' if begin is None else f'{begin:g} s'} to {'the end' if end is None else f'{end:g} s'}"
+
+
 def _nothing(recorded: Recorded, begin: float | None, end: float | None) -> str:
     cycle_time = recorded.cycle_time_ns * 1e-9
-    asked = f"{'the start' if begin is None else f'{begin:g} s'} to {'the end' if end is None else f'{end:g} s'}"
+    asked = asked_time(begin, end)
     if not recorded.states:
         return "holds no states"
     first = min(int(rows["cycle"].min()) for rows in recorded.states.values())

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 import operator
+import platform
 import re
 from collections.abc import Callable, Mapping
 from functools import partial
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from cnc_ptp import KERNEL
 from cnc_ptp.errors import CncError, nearest_name
 from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, CycleTick, SpindleBlock
 from cnc_ptp.recording.blocks import StateBlock, kind_of
@@ -78,7 +81,7 @@ class TriggeredRecording(Recording):
 
     def __init__(self, path: str | Path, machine_yaml: str, *times: int, condition: Condition) -> None:
         """`times`: start and cycle time in ns."""
-        super().__init__(path, machine_yaml, *times, notes={RECORD_WHEN: condition.text})
+        super().__init__(path, machine_yaml, *times, notes={RECORD_WHEN: condition.text, **origin()})
         self._condition = condition
         self.begin: int | None = None
         """The first cycle that is recorded."""
@@ -117,5 +120,16 @@ def make_recording(
 ) -> Recording:
     """A recording of the whole run, or one that begins with a condition."""
     if condition is None:
-        return Recording(path, machine_yaml, start_ns, cycle_time_ns)
+        return Recording(path, machine_yaml, start_ns, cycle_time_ns, notes=origin())
     return TriggeredRecording(path, machine_yaml, start_ns, cycle_time_ns, condition=condition)
+
+
+def origin() -> dict[str, str]:
+    """What a run was computed by, for the metadata: version and kind of the kernel, Python, computer."""
+    return {
+        "version": version("cnc_ptp"),
+        "kernel": KERNEL.kind,
+        "python": platform.python_version(),
+        "host": platform.node(),
+        "system": platform.platform(),
+    }

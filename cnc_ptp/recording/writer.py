@@ -19,7 +19,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import ChannelBlock, CommandRecord, CycleBlock, CycleTick, Event, PlcBlock
 from cnc_ptp.recording.bag import QOS, TYPE_HASH
 from cnc_ptp.recording.blocks import StateKind, block_rows, fill_states, kind_of, kinds_in
-from cnc_ptp.recording.mcap_file import HEAD_SIZE, McapFile
+from cnc_ptp.recording.mcap_file import HEAD_SIZE, METADATA, McapFile
 from cnc_ptp.recording.qos import offered, profiles_text
 from cnc_ptp.wire.block_codec import codec_of, head_of, with_plain_header
 from cnc_ptp.wire.layout import Bytes, Layout, encode, repeat
@@ -35,9 +35,6 @@ CHECKPOINT = "checkpoint/"
 """Attachments with states of the units: their names end with the first cycle behind it."""
 CHECKPOINT_TEXT = "checkpoint_text/"
 """Attachments with long texts of the states: their names end with the digest."""
-METADATA = "cnc_ptp"
-MISSING = "missing"
-"""Key of the metadata: what a recording that was closed for a dead recorder does not have."""
 NO_NOTES: Mapping[str, str] = {}
 BEFORE_ALL = -1  # end of the chunk before the first block
 
@@ -91,6 +88,7 @@ class _Topic:
         self.channel_id = channel_id
         self.type_names = (type_name, full_name(type_name))
         self.runs: list[tuple[_Encoder, list[Any]]] = []
+        self.has_states = False
         self._encoder: _Encoder | None = None
         self._items: list[Any] = []
 
@@ -140,9 +138,9 @@ class Recording:
     """A recording being written.
 
     `block` records a unit's block with its per-cycle states; in the graph the block arrives as bytes, for
-    `encoded_block`. A chunk is closed every `chunk_seconds` of recorded time and whenever `flush_if_due` sees
-    `flush_seconds` of wall time passed; then the operating system gets it. A killed process loses only what came after
-    its last chunk.
+    `encoded_block`. Chunks are closed every `chunk_seconds` of recorded time and whenever `flush_if_due` sees
+    `flush_seconds` of wall time passed; then the operating system gets them. A killed process loses only what came
+    after the last ones. States of a unit have chunks of their own: who reads a column uncompresses nothing else.
 
     Errors (CncError): 26005 unknown message type, 26006 a block that does not fit its message, 26007 the file cannot be
     written, 26008 a topic with two types, 26009 the recording is closed. What was refused is not in the file; the rest
@@ -241,7 +239,7 @@ class Recording:
         """Writes the messages so far as a chunk and hands it to the operating system."""
         self._require_open("a flush")
         self._close_chunk()
-        self._file.finish_chunk()
+        self._file.finish_chunks()
 
     def close(self) -> None:
         """Writes the rest and the summary. A second call has no effect."""
@@ -250,7 +248,7 @@ class Recording:
         self._closed = True
         self._chunk_end = BEFORE_ALL
         try:
-            self._hand_over()
+            self._close_chunk()
         finally:
             self._file.close()
 
@@ -264,8 +262,8 @@ class Recording:
 
     def _block(self, name: str, block_class: type, data: bytes, layout: Layout | None = None) -> None:
         stamp_ns, first_cycle, _count = head_of(data)
-        if self._file.chunk_ready:
-            self._file.finish_chunk()
+        if self._file.chunks_ready:
+            self._file.finish_chunks()
         if first_cycle >= self._chunk_end:
             self._begin_chunk(first_cycle)
         unit = self._units.get((name, block_class)) or self._unit(name, block_class)
@@ -280,7 +278,9 @@ class Recording:
         return unit
 
     def _states_topic(self, name: str, kind: StateKind) -> _Topic:
-        return self._topic(topic_of(name, kind.leaf), kind.state.name)
+        topic = self._topic(topic_of(name, kind.leaf), kind.state.name)
+        topic.has_states = True
+        return topic
 
     def _single(self, topic: str, type_name: str, value: Any) -> None:
         self._require_open(topic)
@@ -311,23 +311,42 @@ class Recording:
             )
 
     def _begin_chunk(self, first_cycle: int) -> None:
-        """Closes the chunk before the block that would exceed it, so that chunks do not overlap in time."""
+        """Closes the chunks before the block that would exceed them: those of one topic do not overlap in time."""
         self._require_open(f"the block with first cycle {first_cycle}")
         if self._chunk_end != BEFORE_ALL:
             self._close_chunk()
         self._chunk_end = first_cycle + self._chunk_cycles
 
     def _close_chunk(self) -> None:
-        self._hand_over()
-        self._file.close_chunk()
-
-    def _hand_over(self) -> None:
+        """A chunk of what the run can be computed from, then one for the states of each unit."""
+        self._file.finish_chunks()
+        states = [topic for topic in self._topics.values() if topic.has_states]
         for topic in self._topics.values():
-            runs = topic.take()[::-1]
-            while runs:
-                encoder, collected = runs.pop()
-                for rows, times in encoder.messages(collected, self.stamps):
-                    self._file.messages(topic.channel_id, rows, times)
+            if not topic.has_states:
+                self._hand_over(topic)
+        self._file.close_chunk()
+        for topic in states:
+            self._hand_over(topic)
+            self._file.close_chunk()
+
+    def _hand_over(self, topic: _Topic) -> None:
+        runs = topic.take()[::-1]
+        while runs:
+            encoder, collected = runs.pop()
+            for rows, times in encoder.messages(collected, self.stamps):
+                self._file.messages(topic.channel_id, rows, times)
+
+
+class NoRecording:
+    """Takes what a recording takes, and keeps nothing: after a disk was full the run continues."""
+
+    def __init__(self, stamps: Stamps) -> None:
+        self.stamps = stamps
+
+    def take(self, *_arguments: Any, **_options: Any) -> None:
+        """See Recording."""
+
+    block = encoded_block = tick = event = command = raw = attachment = flush_if_due = flush = close = take
 
 
 def offer(type_name: str) -> dict[str, str]:

@@ -70,6 +70,7 @@ class _Writer:
         self.header_of = header_of
         self.data = bytearray(ENCAPSULATION)
         self.places: list[Place] = []
+        self.lengths: list[int] = []
 
     def message(self, type_name: str, value: Any, prefix: str = "") -> None:
         for field in self.schema.types[type_name]:
@@ -121,6 +122,8 @@ class _Writer:
         self.align(SIZES[code])
         if name:
             self.places.append(Place(name, len(self.data), code, len(values)))
+        else:
+            self.lengths.append(len(self.data))
         self.data += struct.pack(f"<{len(values)}{code}", *values)
 
     def align(self, size: int) -> None:
@@ -171,6 +174,8 @@ class Layout:
         self.schema = schema
         self.template = bytes(writer.data)
         self.places = tuple(writer.places)
+        self.lengths = tuple(writer.lengths)
+        """Where the lengths of texts and sequences lie."""
         self.dtype = _structured(self.places, len(self.template))
 
     def empty(self, count: int) -> Records:

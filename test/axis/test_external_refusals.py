@@ -205,7 +205,10 @@ def test_setpoints_that_come_after_newer_ones() -> None:
 @pytest.mark.parametrize("setpoints", [5, "abc", None, {"a": 1}])
 def test_setpoints_that_are_no_list(setpoints: Any) -> None:
     bench = external_axis()
-    assert refusal(bench, "external_setpoints", setpoints=setpoints) == f"22001 setpoints = {setpoints!r} is not a rows"
+    assert (
+        refusal(bench, "external_setpoints", setpoints=setpoints)
+        == f"22001 setpoints = {setpoints!r} is not a list of rows"
+    )
 
 
 def test_no_setpoints_at_all() -> None:

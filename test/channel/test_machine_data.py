@@ -96,7 +96,7 @@ SYNTAX = '#MACHINE DATA is written [AX=X P-AXIS-00099.0=5000] or [AX=X AXPARAM="
         ("#MACHINE DATA [AX=A P-AXIS-00099.0=5000]", "20797 18 axis A is not in the machine; axes of this channel: X, Y, Z"),
         ("#MACHINE DATA [AXNR=9 P-AXIS-00099.0=5000]", "20797 20 axis 9 is not in the machine; axes of this channel: 1 (X), 2 (Y), 3 (Z)"),
         ("#MACHINE DATA [AX=X P-AXIS-00099.0=0]", "23096 21 axis X: P-AXIS-00099 getriebe[0].kv: value 0 is not above 0 (0.01/s)"),
-        ("#MACHINE DATA [AX=X P-AXIS-00099.9=5]", "23095 21 axis X: axis /x has no parameter 'getriebe.9.kv', P-AXIS-00099 belongs to axis and spindle nodes"),
+        ("#MACHINE DATA [AX=X P-AXIS-00099.9=5]", "23095 21 axis X: P-AXIS-00099 getriebe[9].kv: index 9 is outside 0 to 5"),
         ("#MACHINE DATA [AX=X P-AXIS-00020=2]", "23095 21 axis X: P-AXIS-00020 (kenngr.antr_typ) cannot be written at run time, it is taken over at start-up only, as the manual has it"),
         ("#MACHINE DATA [AX=X P-AXIS-00178=5]", "23100 21 axis X: P-AXIS-00178 (kenngr.swe_pos) cannot be written at run time, the channel has it, too"),
         ('#MACHINE DATA [AX=X AXPARAM="frict_comp.max_points 5"]', "110641 30 axis X: P-COMP-00062 (frict_comp.max_points) cannot be written at run time, it is taken over at start-up only, as the manual has it"),

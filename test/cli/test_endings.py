@@ -70,7 +70,7 @@ def test_end_request():
         assert end.over(-1.0), "patience is at its end"
 
 
-def test_recording_that_grows_too_large_ends_the_run(tmp_path):
+def test_recording_that_grows_too_large_ends_and_the_run_continues(tmp_path):
     recording = tmp_path / "run.mcap"
     done = subprocess.run(
         command("simulate", MILL, "--program", BRACKET, "--record", recording),
@@ -85,6 +85,7 @@ def test_recording_that_grows_too_large_ends_the_run(tmp_path):
     assert "File too large; recording ends here, the chunks before it stay readable" in done.stderr
     assert "program time" in done.stdout and "Traceback" not in done.stderr
     recorded = read_recording(recording)
+    assert int(done.stdout.partition("(")[2].partition(" cycles")[0]) > recorded.last_cycle + 1000
     assert not recorded.complete and recorded.last_cycle > 500 and verify(recorded, replay_blocks).equal
 
 

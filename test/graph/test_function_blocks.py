@@ -174,8 +174,13 @@ def test_a_parameter_is_set_by_ros(client):
     assert record.arguments_json == '{"parameter": "getriebe.0.kv", "value": 40000.0}'
     one_by_one = set_parameter(client, **{"getriebe.0.kv": 30000, "getriebe.0.window": 5})
     assert one_by_one.reason == "x: parameters are set one by one; nothing was changed"
-    assert "read-only" in set_parameter(client, **{"kenngr.achs_mode": 4}).reason
-    assert not set_parameter(client, **{"getriebe.0.kv": 0}).successful
+    assert set_parameter(client, **{"kenngr.achs_mode": 4}).reason == (
+        "P-ERR-23095 axis x: P-AXIS-00015 (kenngr.achs_mode) cannot be written at run time, it is taken over at "
+        "start-up only; nothing was changed"
+    )
+    assert set_parameter(client, **{"getriebe.0.kv": 0}).reason == (
+        "P-ERR-23096 axis x: P-AXIS-00099 getriebe[0].kv: value 0 is not above 0 (0.01/s); nothing was changed"
+    )
     ascending = set_parameter(client, **{"vorsteuer.vs_v_nenner": 0})
     assert ascending.reason == (
         "P-ERR-23096 axis x: write_parameter refused: axis list, P-AXIS-00229 vorsteuer.vs_v_nenner of /x: value 0 is "

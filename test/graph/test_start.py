@@ -1,11 +1,13 @@
 """Starting and ending: by hand without supervisor, composed, with a full disk."""
 
+import re
+import resource
 import signal
 import subprocess
 import sys
 
 import pytest
-from graph_support import TIMEOUT, Running, one_axis_machine, run, verified
+from graph_support import TIMEOUT, Running, command, one_axis_machine, run, verified
 
 from cnc_ptp.nodes.process import PROFILE, RANGE, set_environment
 from cnc_ptp.recording.reader import read_recording
@@ -75,6 +77,30 @@ def test_full_disk(one_axis):
 def test_full_disk_in_a_composed_run(one_axis):
     done = run("run", one_axis, "--composed", "--record", "/dev/full", expect=1)
     assert "failed: P-ERR-26007 recording /dev/full: cannot be written" in done.stdout
+
+
+@pytest.mark.parametrize("composed", [(), ("--composed",)])
+def test_disk_that_gets_full_on_the_way(one_axis, tmp_path, composed):
+    """The run continues to its end; the event says from where on the recording has nothing; the file opens."""
+    recording = tmp_path / "run.mcap"
+    options = ("--scenario", tmp_path / "move.yaml", "--duration", "4", *composed, "--record", recording)
+    done = subprocess.run(
+        command("run", one_axis, *options),
+        capture_output=True,
+        text=True,
+        timeout=TIMEOUT,
+        check=False,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (150_000, 150_000)),
+    )
+    assert "machine time 4.0" in done.stdout, done.stdout + done.stderr
+    found = re.search(
+        rf"P-ERR-26015 recorder: recording {recording}: cannot be written at offset \d+: File too large; the run continues "
+        r"without it, about cycle (\d+) and later are missing",
+        done.stderr,
+    )
+    assert found and done.returncode == 1, done.stderr
+    recorded = read_recording(recording)
+    assert not recorded.complete and 0 < recorded.last_cycle <= int(found[1]) + 1000 < 4000
 
 
 def test_free_run_that_is_recorded_in_full(one_axis, tmp_path):

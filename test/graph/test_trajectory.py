@@ -8,18 +8,14 @@ import subprocess
 
 import numpy as np
 import pytest
-import rclpy
-from builtin_interfaces.msg import Duration
-from client_support import Client
-from graph_support import PTP, TIMEOUT, Running, command, kill, run, states_equal, verified
-from rclpy.action import ActionClient
+from client_support import connected
+from graph_support import PTP, TIMEOUT, Running, command, run, states_equal, verified
 from scipy.interpolate import CubicHermiteSpline
-from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+from trajectory_msgs.msg import JointTrajectory
+from trajectory_support import TrajectoryClient, duration, trajectory
 
 from cnc_ptp import action, msg
-from cnc_ptp.nodes import process
-from cnc_ptp.nodes.topics import TRAJECTORY_ACTION, TRAJECTORY_TOPIC
-from cnc_ptp.parameters import read_machine
+from cnc_ptp.nodes.topics import TRAJECTORY_TOPIC
 from cnc_ptp.protocol.axis_states import AxisStateCode
 
 Result = action.FollowTrajectory.Result
@@ -29,47 +25,6 @@ SCENARIO = f"""
 - {{at: 2.0, to: plc, do: follow_trajectory, axes: [c, x, z], points: [[2, [90, 0, 10], [0, 0, 0]]]}}
 - {{at: 2.5, to: x, do: stop}}
 """
-
-
-def duration(seconds):
-    return Duration(sec=int(seconds), nanosec=round(math.modf(seconds)[0] * 1e9))
-
-
-def trajectory(joints, rows):
-    """Rows of time, positions and velocities, in SI units."""
-    points = [
-        JointTrajectoryPoint(time_from_start=duration(time), positions=positions, velocities=velocities)
-        for time, positions, velocities in rows
-    ]
-    return JointTrajectory(joint_names=joints, points=points)
-
-
-class TrajectoryClient(Client):
-    """`follow` sends a goal and returns its handle; `feedback` has what came of the last one."""
-
-    def __init__(self, machine):
-        super().__init__(machine)
-        self.action = ActionClient(self, action.FollowTrajectory, TRAJECTORY_ACTION)
-        self.feedback = []
-
-    def follow(self, joints, rows, **options):
-        self.spin_until(self.action.server_is_ready, "the action")
-        self.feedback.clear()
-        goal = action.FollowTrajectory.Goal(trajectory=trajectory(joints, rows), **options)
-        asked = self.action.send_goal_async(goal, feedback_callback=lambda told: self.feedback.append(told.feedback))
-        self.spin_until(asked.done, "the answer to the goal")
-        return asked.result()
-
-    def result(self, handle):
-        told = handle.get_result_async()
-        self.spin_until(told.done, "the result")
-        return told.result().result
-
-    def at_rest(self, *axes):
-        """And the PLC, which learns of the end of a job a block later, knows it."""
-        for axis in axes:
-            self.shows(axis, "state", AxisStateCode.STANDSTILL)
-        self.wait_blocks("plc", 3)
 
 
 @pytest.fixture(scope="module")
@@ -87,14 +42,9 @@ def graph(ros_domain, recording):
 
 @pytest.fixture(scope="module")
 def client(graph):
-    process.initialise()
-    client = TrajectoryClient(read_machine(str(PTP)))
-    client.start()
-    client.wait_blocks("x", 1)
-    yield client
-    client.destroy_node()
-    client.executor_of_test.shutdown()
-    rclpy.try_shutdown()
+    with connected(TrajectoryClient, PTP) as client:
+        client.wait_blocks("x", 1)
+        yield client
 
 
 def test_a_goal_in_metres_and_radians_is_reached(client):
@@ -222,57 +172,6 @@ def test_the_recording_is_computed_again(graph, client, recording):
     graph.process.send_signal(signal.SIGINT)
     graph.finish(expect=1)
     verified(recording)
-
-
-ENDS = {
-    "axis lost": (26101, "axis y: its node is lost; the other axes stop on their ramps"),
-    "another command": (0, "axis y: the trajectory was aborted by a stop or another command; all axes have stopped"),
-    "without power": (0, "axis y: the trajectory was aborted by a stop or another command; all axes have stopped"),
-    "emergency stop": (26168, "axis x: emergency stop; the axis stops on its emergency ramp (ErrorStop)"),
-    "end of the run": (0, "axis x: the trajectory was aborted by a stop or another command; all axes have stopped"),
-}
-
-
-@pytest.mark.parametrize("end", ENDS)
-def test_a_trajectory_that_ends_in_the_middle(ros_domain, tmp_path, end):
-    """Number and text of the result; the axes that are still there come to rest on their ramps."""
-    graph = Running(PTP, "--duration", 300, "--record", tmp_path / "run.mcap")
-    try:
-        nodes = dict(graph.wait_for_nodes(7))
-        process.initialise()
-        client = TrajectoryClient(read_machine(str(PTP)))
-        client.start()
-        client.wait_blocks("x", 1)
-        handle = client.follow(["x", "y"], [(20.0, [1.0, 1.0], [0.0, 0.0])])
-        client.wait_last("y", lambda block: block.set_velocity[-1] > 10.0, "in motion")
-        interrupt(end, graph, nodes, client)
-        result = client.result(handle)
-        assert (result.success, result.error_code) == (False, Result.ABORTED)
-        assert (result.error_id, result.error_string) == ENDS[end]
-        client.wait_last("x", lambda block: block.set_velocity[-1] == 0.0, "at rest")
-        if end not in ("axis lost", "end of the run"):
-            graph.process.send_signal(signal.SIGINT)
-        client.destroy_node()
-        client.executor_of_test.shutdown()
-        rclpy.try_shutdown()
-        graph.finish(expect=1)
-    finally:
-        graph.end()
-    velocity = verified(tmp_path / "run.mcap", whole=False).states["/x/state"]["set_velocity"]
-    assert velocity.max() > 10.0 and velocity[-1] == 0.0 and np.abs(np.diff(velocity)).max() <= 20.0 * 1.001
-
-
-def interrupt(end, graph, nodes, client):
-    if end == "axis lost":
-        kill(nodes["y"])
-    elif end == "another command":
-        client.done("y", "stop")
-    elif end == "without power":
-        client.done("y", "power", enabled=False)
-    elif end == "emergency stop":
-        client.done("plc", "emergency_stop", enabled=True)
-    else:
-        graph.process.send_signal(signal.SIGINT)
 
 
 @pytest.mark.parametrize("options", [[], ["--composed"]], ids=str)

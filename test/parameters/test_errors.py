@@ -266,8 +266,8 @@ CASES = {
     ),
     "none of the constants": (
         axis("{kenngr.achs_typ: ROTARY}"),
-        "P-ERR-25008 m.yaml:2:41: axis list, P-AXIS-00018 kenngr.achs_typ of /x: value 'ROTARY' has 'ROTARY', "
-        "which is none of ACHSTYP_TRANSLATOR, ACHSTYP_ROTATOR, ACHSTYP_SPINDEL" + END,
+        "P-ERR-25008 m.yaml:2:41: axis list, P-AXIS-00018 kenngr.achs_typ of /x: value 'ROTARY' "
+        "is none of ACHSTYP_TRANSLATOR, ACHSTYP_ROTATOR, ACHSTYP_SPINDEL" + END,
     ),
     "number without a constant": (
         axis("{kenngr.achs_typ: 3}"),

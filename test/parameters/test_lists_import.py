@@ -147,6 +147,19 @@ def test_a_remark_that_says_another_constant(written: str, said: str) -> None:
     assert found == ([f"f/sda_mds_channel.lis:1:20: notice: spindel[0].s_synch: {said}"] if said else [])
 
 
+def test_a_number_of_files_that_is_not_theirs_is_said() -> None:
+    startup = "zahl_mds {} # axes\nachs_mds[0] achs_mds_x.lis\nachs_mds[1] achs_mds_s.lis\n"
+    assert not notes(small("hochlauf.lis", startup.format(2)), "notice")
+    text = "zahl_mds is 3, but the start-up list names 2; all that it names are read"
+    assert notes(small("hochlauf.lis", startup.format(3)), "notice") == [f"f/hochlauf.lis:1:10: notice: {text}"]
+
+
+def test_a_compensation_list_with_the_number_of_no_axis_is_said() -> None:
+    assert not notes(small("achs_kw_x.lis", "kopf.achs_nr 1\n"), "notice")
+    text = "kopf.achs_nr is 7, but no axis has this number; this is taken as the list of number 1"
+    assert notes(small("achs_kw_x.lis", "kopf.achs_nr 7\n"), "notice") == [f"f/achs_kw_x.lis:1:14: notice: {text}"]
+
+
 def test_the_text_is_a_machine_file() -> None:
     result = imported()
     machine = load_machine(result.text, "m.yaml")

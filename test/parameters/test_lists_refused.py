@@ -175,6 +175,53 @@ def test_two_axes_with_one_number() -> None:
     assert said == f"P-ERR-25010 f/achs_mds_y.lis:2:14: {text}, in 'kopf.achs_nr 1'{END}"
 
 
+def test_two_axes_with_one_number_that_have_compensation_lists() -> None:
+    """What is wrong is the number, not the compensation lists."""
+    compensation = "kopf.achs_nr 1\nfrict_comp.scaling_factor 3\n"
+    files = {
+        **SMALL,
+        "achs_mds_y.lis": "kopf.achs_nr 1\n",
+        "achs_kw_x.lis": compensation,
+        "achs_kw_y.lis": compensation,
+    }
+    text = "axis list, P-AXIS-00016 kopf.achs_nr of /y: value 1 is the logical axis number of /x already"
+    assert refusal(files) == f"P-ERR-25010 f/achs_mds_y.lis:1:14: {text}, in 'kopf.achs_nr 1'{END}"
+
+
+def test_a_limit_that_another_line_has() -> None:
+    said = axis_refusal("kenngr.swe_pos 5", "# a comment", "kenngr.swe_neg 5")
+    text = (
+        "axis list, P-AXIS-00177 kenngr.swe_neg of /x: value 5 is not below 5 (0.1 µm) of P-AXIS-00178 kenngr.swe_pos"
+    )
+    assert said == f"P-ERR-25009 f/achs_mds_x.lis:4:16: {text} in line 2, in 'kenngr.swe_neg 5'{END}"
+
+
+def test_a_limit_that_another_list_has() -> None:
+    """A misplaced line of an axis in its compensation list."""
+    scale = "frict_comp.scaling_factor 3\n"
+    files = {
+        **SMALL,
+        "achs_mds_x.lis": "kopf.achs_nr 1\nkenngr.swe_pos 5\n",
+        "achs_kw_x.lis": "kenngr.swe_neg 5\n" + scale,
+    }
+    assert "P-AXIS-00178 kenngr.swe_pos in line 2, in" in refusal(files)
+    files = {
+        **SMALL,
+        "achs_mds_x.lis": "kopf.achs_nr 1\nkenngr.swe_neg 5\n",
+        "achs_kw_x.lis": "kenngr.swe_pos 5\n" + scale,
+    }
+    assert "P-AXIS-00178 kenngr.swe_pos in f/achs_kw_x.lis, line 1, in" in refusal(files)
+
+
+def test_what_follows_from_a_missing_list_is_not_said() -> None:
+    startup = "axes x, t\nachs_mds[0] achs_mds_x.lis\nachs_mds[1] achs_mds_s.lis\nachs_mds[2] achs_mds_t.lis\n"
+    files = {**SMALL, "hochlauf.lis": startup, "achs_kw_t.lis": "kopf.achs_nr 7\nfrict_comp.scaling_factor 3\n"}
+    assert refusal(files) == (
+        "P-ERR-25017 f/hochlauf.lis:4:13: achs_mds[2]: file achs_mds_t.lis is not in f; did you mean achs_mds_x.lis?; "
+        f"copy it there, or delete the line, in 'achs_mds[2] achs_mds_t.lis'{END}"
+    )
+
+
 def test_files_that_the_start_up_list_names() -> None:
     startup = (
         "achs_mds[0] ..\\listen\\achs_mds_x.lis\nachs_mds[1] achs_mds_t.lis\nachs_mds[2] ACHS_MDS_X.LIS\nachs_mds[3]\n"
@@ -187,6 +234,16 @@ def test_files_that_the_start_up_list_names() -> None:
         "P-ERR-25043 f/hochlauf.lis:4:12: achs_mds[3]: it has no value; write one behind the name, or delete the line, "
         f"in 'achs_mds[3]'{END}",
     ]
+
+
+@pytest.mark.parametrize("line", ["zahl_mds", "zahl_mds # axes"])
+def test_a_number_of_files_without_a_value(line: str) -> None:
+    startup = f"achs_mds[0] achs_mds_x.lis\nachs_mds[1] achs_mds_s.lis\n{line}\n"
+    text = "zahl_mds: it has no value; write one behind the name, or delete the line"
+    column = len("zahl_mds") + 1 + (" #" in line)
+    assert small_refusal("hochlauf.lis", startup) == (
+        f"P-ERR-25043 f/hochlauf.lis:3:{column}: {text}, in '{line}'{END}"
+    )
 
 
 def test_names_of_nodes_in_the_start_up_list() -> None:

@@ -9,6 +9,7 @@ import pytest
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import load_machine
+from cnc_ptp.parameters.declare import where
 from cnc_ptp.parameters.declare.declarations import catalogue
 from cnc_ptp.parameters.declare.reference import change_text, entry_text, find, reference_markdown
 
@@ -42,6 +43,19 @@ def test_module_prints_the_document() -> None:
     assert output.decode("utf-8") == reference_markdown()
 
 
+def test_readers_do_not_depend_on_the_folder_of_the_checkout(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
+) -> None:
+    expected = where.readers()
+    checkout = tmp_path / "check" / "declare" / "view"
+    checkout.mkdir(parents=True)
+    (checkout / "cnc_ptp").symlink_to(where.PACKAGE)
+    monkeypatch.setattr(where, "PACKAGE", checkout / "cnc_ptp")
+    where.readers.cache_clear()
+    request.addfinalizer(where.readers.cache_clear)
+    assert where.readers() == expected
+
+
 @pytest.mark.parametrize(
     "name",
     [
@@ -57,6 +71,10 @@ def test_module_prints_the_document() -> None:
 )
 def test_one_parameter_by_id_or_name(name: str) -> None:
     assert describe(name) == KV
+
+
+def test_zeros_of_an_id_may_be_left_out() -> None:
+    assert describe("p-axis-99") == describe("P-AXIS-099") == describe("P-AXIS-00099")
 
 
 def test_a_last_part_that_several_have() -> None:

@@ -175,10 +175,15 @@ def test_with_a_scenario_it_ends_as_usual_unless_the_plc_objects() -> None:
     assert len(PlcBench(lambda io: Steps(stays), scenario).run().blocks["x"]) == 220
 
 
-def test_a_plc_that_commands_nothing_for_a_minute_ends_the_run() -> None:
-    bench = PlcBench(lambda io: Steps(lambda io: None)).run()
+def refused(io: Any) -> None:
+    io.axis("x").give("move_absolute", target=1e9)
+
+
+@pytest.mark.parametrize("cycle", [lambda io: None, refused], ids=["nothing", "refused in every block"])
+def test_a_plc_that_moves_nothing_for_a_minute_ends_the_run(cycle: Any) -> None:
+    bench = PlcBench(lambda io: Steps(cycle)).run()
     assert bench.errors() == [
-        "P-ERR-22014 plc plc: everything is at a standstill, but the PLC has commanded nothing for 60 s; "
+        "P-ERR-22014 plc plc: everything is at a standstill, but no command was accepted for 60 s; "
         "everything is stopped and the run ends"
     ]
 

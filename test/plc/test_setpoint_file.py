@@ -186,7 +186,7 @@ def test_a_file_that_is_no_text(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("setpoints", "reason"),
     [
-        ("5", "setpoints = 5 is not a rows"),
+        ("5", "setpoints = 5 is not a list of rows"),
         ("[5]", f"a setpoint needs {COLUMNS}; 5 is not a list of them"),
         ("[[]]", f"a setpoint needs {COLUMNS}; [] has 0 values"),
         ("[[a, 0, 0, 0, 1]]", "cycle = 'a' is not a number within ±1e+12"),

@@ -66,11 +66,15 @@ def test_statistics_index_and_crcs_are_those_of_the_library(path, blocks):
         assert reader.get_header().profile == "ros2"
     statistics = summary.statistics
     assert statistics.message_count == 120 * 6 + 1200 * 4 + 2 == sum(statistics.channel_message_counts.values())
-    assert (statistics.chunk_count, statistics.attachment_count, statistics.metadata_count) == (5, 1, 2)
+    assert (statistics.chunk_count, statistics.attachment_count, statistics.metadata_count) == (25, 1, 2)
     assert (statistics.channel_count, statistics.schema_count) == (12, 10)
     assert (statistics.message_start_time, statistics.message_end_time) == (0, 1_199_000_000)
     ranges = [(chunk.message_start_time, chunk.message_end_time) for chunk in summary.chunk_indexes]
-    assert ranges == [
+    names = {channel.id: channel.topic for channel in summary.channels.values()}
+    own = [{names[id] for id in chunk.message_index_offsets} for chunk in summary.chunk_indexes[1:5]]
+    assert own == [{"/channel/state"}, {"/x/state"}, {"/y/state"}, {"/s/state"}]
+    assert ranges[1::5] == ranges[2::5] == ranges[4::5]
+    assert ranges[1::5] == [
         (0, 249_000_000),
         (250_000_000, 499_000_000),
         (500_000_000, 749_000_000),
@@ -208,9 +212,8 @@ def test_chunks_are_written_on_the_way_without_a_flush(path, blocks):
     with Recording(path, MACHINE, chunk_seconds=0.1) as recording:
         for name, block in blocks.machine(35):
             recording.block(name, block)
-        closed = recording._file._closed_chunk
-        if closed is not None:  # else it has been compressed and written already
-            closed[1].result()
+        for _chunk, compression in recording._file._closed_chunks:  # others have been written already
+            compression.result()
         recording.block("plc", PlcBlock(350, 10))
         assert len(read_recording(path).states["/x/state"]) == 300
     assert len(read_recording(path).states["/x/state"]) == 350

@@ -192,7 +192,7 @@ BLOCKS_EXPECTED = [
     "command_aborted", "done", 10.0,
     (True, 120002, "axis x: move_absolute refused: target 100000.0 mm lies beyond the positive soft limit 300.0 mm (P-AXIS-00178); nothing was changed"),
     (True, 22001, "axis x: move_absolute refused: target = nan is not finite; nothing was changed"),
-    (True, 22001, "axis x: move_absolute refused: buffer_mode = 'later' is not aborting or buffered or blending_low or blending_previous or blending_next or blending_high; nothing was changed"),
+    (True, 22001, "axis x: move_absolute refused: buffer_mode = 'later' is not aborting, buffered, blending_low, blending_previous, blending_next or blending_high; nothing was changed"),
     "command_aborted", "done", 1,
     500, 0, (22169, "axis /x has no parameter 'P-AXIS-99999'; nothing was read"),
 ]  # fmt: skip

@@ -157,6 +157,20 @@ class Client(Node):
 
 
 @contextmanager
+def connected(make, machine):
+    """A client beside a run (`make` of the machine); it is closed with the block, however that ends."""
+    process.initialise()
+    try:
+        client = make(read_machine(str(machine)))
+        client.start()
+        yield client
+        client.destroy_node()
+        client.executor_of_test.shutdown()
+    finally:
+        rclpy.try_shutdown()
+
+
+@contextmanager
 def beside_composed_run(machine):
     """A client beside a run of the machine in one process; both end with the block."""
     graph = Running(machine, "--duration", "600", "--composed")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,6 +52,16 @@ def parts_of(curve: CubicSpline, limits: Sequence[AxisLimits], feed: float) -> l
     return parts
 
 
+def feed(ahead: LookAhead, waiting: Iterator[PathPart]) -> None:
+    """Gives the look-ahead what it wants; closes it behind the last part."""
+    while ahead.wants:
+        part = next(waiting, None)
+        if part is None:
+            ahead.closed = True
+            break
+        ahead.append(part)
+
+
 def run(
     parts: Iterable[PathPart], script: Sequence[tuple[int, float]] = (), block: int = 10, longest: int = 200_000
 ) -> tuple[Array, Array]:
@@ -63,12 +73,7 @@ def run(
     while not ahead.done:
         while overrides and overrides[0][0] <= len(states):
             ahead.set_override(overrides.pop(0)[1])
-        while ahead.wants:
-            part = next(waiting, None)
-            if part is None:
-                ahead.closed = True
-                break
-            ahead.append(part)
+        feed(ahead, waiting)
         for u, v, a, j in ahead.step(block, CYCLE):
             rows.append((u, v, a, j))
             begin, part = ahead.locate(u)

@@ -417,8 +417,8 @@ CASES: list[tuple[int, Ask, str, dict[str, Any]]] = [
     (
         22001,
         of_x("move_absolute", **MOVE, buffer_mode="queued"),
-        "axis x: move_absolute refused: buffer_mode = 'queued' is not aborting or buffered or blending_low or "
-        "blending_previous or blending_next or blending_high; nothing was changed",
+        "axis x: move_absolute refused: buffer_mode = 'queued' is not aborting, buffered, blending_low, "
+        "blending_previous, blending_next or blending_high; nothing was changed",
         {"argument": "buffer_mode"},
     ),
     # other coordinates

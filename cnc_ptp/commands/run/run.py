@@ -14,6 +14,7 @@ from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nc.block_search import StartPoint
 from cnc_ptp.nodes.composed import run_composed
 from cnc_ptp.nodes.monitor import RunMonitor
+from cnc_ptp.nodes.recorder import ENDED_EARLY
 from cnc_ptp.nodes.supervisor import RunOptions, Supervisor
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.recording.node_figures import BLOCKS, CAME_TWICE, LOST_BLOCKS, following_error
@@ -37,7 +38,7 @@ def run(
     plc: str | None = None,
     record_when: str | None = None,
 ) -> int:
-    """Runs the graph; prints a summary. Status 1 when a unit ended in error or a node died.
+    """Runs the graph; prints a summary. Status 1 when a unit ended in error, a node died or the disk was full.
 
     `stay`: until Ctrl-C, which is no error when everything is at a standstill. `strict`: status 1 also when a
     command was refused.
@@ -67,7 +68,8 @@ def run(
     print_summary(parameters, monitor, failures, duration)
     given = (program, scenario, plc, duration, stay or None)
     print_note_of_idle_run(*given, options="--program, --scenario, --plc, --duration or --stay")
-    return RUN_FAILED if failures or monitor.run_failed or (strict and monitor.refused) else 0
+    cut_short = any(text.startswith(f"P-ERR-{ENDED_EARLY} ") for text in monitor.errors)
+    return RUN_FAILED if failures or monitor.run_failed or cut_short or (strict and monitor.refused) else 0
 
 
 def print_summary(

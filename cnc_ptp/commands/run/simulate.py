@@ -106,13 +106,15 @@ def simulate(
                 progress.show_block(outputs)
                 if end.given and interrupted(run.machine, outputs, result, end):
                     break
-    except CncError as error:  # of the recording: it can no longer be written
+    except CncError as error:
         print_error(error)
         result.failed = True
+    if run.failure is not None:  # the recording is not whole
+        print_error(run.failure)
     print_summary(parameters, result, time.monotonic() - started, duration)
     print_note_of_idle_run(program, scenario, plc, duration)
     print_note_of_trigger(run)
-    return RUN_FAILED if result.failed or result.interrupted or (strict and result.refused) else 0
+    return RUN_FAILED if result.failed or run.failure or result.interrupted or (strict and result.refused) else 0
 
 
 class EndlessCycle:

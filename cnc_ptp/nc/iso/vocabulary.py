@@ -44,7 +44,7 @@ _G_CODES = (
     GCode(21, "units", prepare=codes.unit),
     GCode(28, "block", motion=own.reference_point, modal=False, prepare=own.require_axes),
     GCode(30, "block", later="a second reference point"),
-    GCode(31, "path", motion=measuring.skip, modal=False),
+    GCode(31, "path", motion=measuring.skip, modal=False, prepare=measuring.require_words),
     GCode(33, "path", later="thread cutting"),
     GCode(40, "tool radius", select=radius_codes.side(40)),
     *(

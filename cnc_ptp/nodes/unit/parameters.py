@@ -80,9 +80,9 @@ def _refused_value(node: Node, name: str, override: Any, reason: str) -> CncErro
 
 
 def refused_change(own: ParameterSet, wanted: Iterable[Any]) -> SetParametersResult | None:
-    """The answer to a change that is refused for a special reason; None when it is just read-only."""
+    """The answer to a change that no unit takes, with number and reason; those of ROS have neither."""
     for parameter in wanted:
-        error = change_refusal(own, parameter.name, parameter.value)
+        error = change_refusal(own, parameter.name, _given(parameter))
         if error is not None:
             return refusal(str(error))
     return None

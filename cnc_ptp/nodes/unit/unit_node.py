@@ -206,7 +206,7 @@ class UnitNode(PollingNode):
         return self.poll(message_type, topic, take, BLOCKS)
 
     def set_parameters_atomically(self, parameter_list: Any) -> Any:
-        """Refuses what cannot change, some of it with a special reason."""
+        """Refuses what cannot change, with the reason; ROS would only say that it is read-only."""
         refused = refused_change(self._machine.raw(self._own_name), parameter_list)
         return refused or super().set_parameters_atomically(parameter_list)
 

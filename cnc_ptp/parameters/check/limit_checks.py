@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from cnc_ptp.parameters import errors
 from cnc_ptp.parameters.declare.declarations import Declaration, Limit
-from cnc_ptp.parameters.errors import Problem
+from cnc_ptp.parameters.errors import AT_RUN_TIME, Place, Problem
 from cnc_ptp.parameters.read.messages import problem
 from cnc_ptp.parameters.read.parameter_set import Parameter, ParameterSet, parameter_limits
 from cnc_ptp.parameters.read.values import shown, violates_lower, violates_upper, with_unit
@@ -56,6 +56,15 @@ def violation(parameters: ParameterSet, parameter: Parameter, limit: Limit, uppe
 
 
 def other_name(parameters: ParameterSet, declaration: Declaration, indexes: tuple[int, ...]) -> str:
-    place = parameters.given.get(declaration.ros_name(indexes))
-    origin = f"in line {place.place.line}" if place else "by default"
-    return f"{declaration.id} {declaration.list_style_name(indexes)} {origin}"
+    """Of the parameter that a value is compared with, and where it has its own from."""
+    given = parameters.given.get(declaration.ros_name(indexes))
+    place = given.place if given else None
+    return f"{declaration.id} {declaration.list_style_name(indexes)} {place_text(place, parameters.place.file)}"
+
+
+def place_text(place: Place | None, file: str) -> str:
+    if place is None:
+        return "by default"
+    if place == AT_RUN_TIME:
+        return "as written at run time"
+    return f"in line {place.line}" if place.file == file else f"in {place.file}, line {place.line}"

@@ -127,8 +127,8 @@ def corrected_resolution(parameters: ParameterSet) -> Iterator[Notice]:
     for gear in parameters.used_indexes("getriebe"):
         for number, warning in CORRECTED.items():
             if parameters.number(number, gear) == 0:
-                text, values = "value 0 is corrected to 1", (("corrected", 1.0, OWN_UNIT),)
-                yield notice(parameters, number, (gear,), text, error_id=warning, values=values)
+                values = (("corrected", 1.0, OWN_UNIT),)
+                yield notice(parameters, number, (gear,), "value 0 is corrected to 1", error_id=warning, values=values)
 
 
 def gear_ratio_without_effect(parameters: ParameterSet) -> Iterator[Notice]:

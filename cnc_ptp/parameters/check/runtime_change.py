@@ -11,6 +11,7 @@ from cnc_ptp.parameters.check.control_notices import delays, denominators
 from cnc_ptp.parameters.check.machine_checks import NODE_CHECKS
 from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.declare.declarations import Declaration, ParameterValue, dotted
+from cnc_ptp.parameters.errors import AT_RUN_TIME
 from cnc_ptp.parameters.read.messages import Notice
 from cnc_ptp.parameters.read.parameter_set import Given, Parameter, ParameterSet
 from cnc_ptp.parameters.read.sections import checked_entry
@@ -52,8 +53,8 @@ def changed(own: ParameterSet, name: str, wanted: Value) -> Change:
     have either, 110641 for P-COMP-00062.
     """
     declaration, indexes, value = possible_change(own, name, wanted)
-    ros_name, place = declaration.ros_name(indexes), own.where(declaration.id, *indexes)
-    new = replace(own, given={**own.given, ros_name: Given(value, place)})
+    ros_name = declaration.ros_name(indexes)
+    new = replace(own, given={**own.given, ros_name: Given(value, AT_RUN_TIME)})
     for check in NODE_CHECKS[own.kind]:
         for problem in check(new):
             raise CncError(BAD_PARAMETER_VALUE, problem.text)
@@ -120,12 +121,16 @@ def start_refusal(parameters: ParameterSet, ros_name: str, wanted: Value) -> str
     return ""
 
 
-def change_refusal(parameters: ParameterSet, ros_name: str, wanted: object) -> CncError | None:
-    """The error 110641 for a change of P-COMP-00062; None for all others."""
-    declaration = parameters.catalogue.by_id[POINTS]
-    if ros_name != declaration.ros_name(()) or not declaration.belongs_to(parameters.kind):
-        return None
-    name, value = declaration.list_style_name(()), parameters.value(POINTS)
-    text = f"{name} = {value} ({POINTS}) cannot be changed to {wanted} after start-up"
+def change_refusal(parameters: ParameterSet, ros_name: str, wanted: Value) -> CncError | None:
+    """Why ROS cannot give a parameter another value: 23095, 23096, 110641; None if the unit may be asked."""
+    where, fixed = f"{parameters.kind} {parameters.node}", parameters.catalogue.by_id[POINTS]
     effect = "nothing was changed, set it in the machine file and start again"
-    return CncError(MEMORY_IS_FIXED, f"{parameters.kind} {parameters.node}: {text}; {effect}")
+    if ros_name == fixed.ros_name(()) and fixed.belongs_to(parameters.kind):
+        name, value = fixed.list_style_name(()), parameters.value(POINTS)
+        text = f"{name} = {value} ({POINTS}) cannot be changed to {wanted} after start-up"
+        return CncError(MEMORY_IS_FIXED, f"{where}: {text}; {effect}")
+    try:
+        possible_change(parameters, ros_name, wanted)
+    except CncError as error:
+        return CncError(error.number, f"{where}: {error.reason}; nothing was changed")
+    return None

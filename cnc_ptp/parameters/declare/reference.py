@@ -138,6 +138,8 @@ def find(wanted: str) -> list[Declaration]:
     """
     declarations = list(catalogue().by_id.values())
     words = wanted.lower().split()
+    short = re.fullmatch(r"(p-[a-z]+-)(\d{1,5})", wanted.strip().lower())
+    wanted = f"{short[1]}{short[2]:0>5}" if short else wanted
     searches: tuple[Callable[[Declaration], bool], ...] = (
         lambda entry: matches(entry, wanted.strip()),
         lambda entry: wanted.strip().isdecimal() and int(entry.id.rpartition("-")[2]) == int(wanted),

@@ -92,11 +92,11 @@ def ids_in(line: str) -> Iterator[str]:
 def readers() -> dict[str, list[str]]:
     """Id -> modules that use its constant, the views first: they make of it what the kernel takes."""
     found: dict[str, list[str]] = {}
-    paths = sorted(PACKAGE.rglob("*.py"), key=lambda path: ("view" not in path.parts, path))
-    for path in paths:
-        if "declare" in path.parts or "check" in path.parts:
+    modules = (path.relative_to(PACKAGE) for path in PACKAGE.rglob("*.py"))
+    for module in sorted(modules, key=lambda module: ("view" not in module.parts, module)):
+        if "declare" in module.parts or "check" in module.parts:
             continue
-        for name in dict.fromkeys(_CONSTANT.findall(path.read_text(encoding="utf-8"))):
+        for name in dict.fromkeys(_CONSTANT.findall((PACKAGE / module).read_text(encoding="utf-8"))):
             if number := getattr(ids, name, ""):
-                found.setdefault(number, []).append(path.relative_to(PACKAGE).as_posix())
+                found.setdefault(number, []).append(module.as_posix())
     return found

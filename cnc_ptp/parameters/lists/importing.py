@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
@@ -18,11 +19,14 @@ from cnc_ptp.parameters.lists.marks import list_mark
 from cnc_ptp.parameters.lists.names import BadIndex, Found, UnknownName, resolve
 from cnc_ptp.parameters.lists.problems import ListError, ListProblem
 from cnc_ptp.parameters.lists.report import CORRECTED, DEFAULTED, NOTICE, READ, UNKNOWN, ListCount, Report
-from cnc_ptp.parameters.lists.units import UNIT_LISTS, Unit, Units, find_units, place_of
-from cnc_ptp.parameters.lists.values import BadLine, said_otherwise, split_value, to_yaml
+from cnc_ptp.parameters.lists.units import UNIT_LISTS, Unit, Units, find_units, number_in, place_of
+from cnc_ptp.parameters.lists.values import NO_VALUE, BadLine, said_otherwise, split_value, to_yaml
 from cnc_ptp.parameters.loader import load_machine
 from cnc_ptp.parameters.read.machine_sections import read_parameters
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
+
+MACHINE_FILE = "machine.yaml"
+"""As the text of the machine is called while it is checked."""
 
 
 class Imported(NamedTuple):
@@ -74,6 +78,10 @@ class Writer:
         self.first: dict[str, Line] = {}
         self.letter = ""
         """Axis type of the unit whose lists are written."""
+        self.number: int | None = None
+        """Its logical axis number, if its own list has one."""
+        self.named: Counter[str] = Counter()
+        """How many files of each kind the start-up list names, by the parameter that counts them."""
 
     def machine(self, startup: ListFile | None, folder: str, units: Units) -> None:
         """The section /machine: its units, and what else the start-up list has."""
@@ -83,11 +91,13 @@ class Writer:
             self.text.names(name, [unit.name for unit in units.of(kind)], origin)
         self.first = {}
         if startup:
+            entries = [entry for line in startup.lines if (entry := entry_of(line))]
+            self.named = Counter(kind.counted_by for kind, _ in entries)
             self.add_list("machine", startup)
 
     def unit(self, unit: Unit) -> None:
         self.text.section(unit.name, Origin(unit.own.place))
-        self.first, self.letter = {}, unit.letter
+        self.first, self.letter, self.number = {}, unit.letter, unit.number
         for entry in unit.lists:
             self.add_list(unit.name, entry)
 
@@ -114,7 +124,17 @@ class Writer:
         if kind is not STARTUP or not (entry_of(line) or is_count(line) or line.name in UNIT_LISTS):
             return False
         self.frame(line)
+        if is_count(line) and (count := self.named[line.name]):
+            self.compare(line, count, f"the start-up list names {count}; all that it names are read")
         return True
+
+    def compare(self, line: Line, number: int, text: str) -> None:
+        """A notice about a number that the machine file has from elsewhere, if the list gives another one."""
+        written, _, _ = line.rest.partition("#")[0].strip().partition(" ")
+        if not written:
+            self.problem(errors.LIST_LINE, line, f"{line.name}: {NO_VALUE}")
+        elif number_in({line.name: written}, line.name) != number:
+            self.report.add(NOTICE, line.value_place, f"{line.name} is {written}, but {text}")
 
     def frame(self, line: Line) -> None:
         self.report.add(READ, line.place, " ".join(line.text.split()))
@@ -138,6 +158,9 @@ class Writer:
         else:
             if kind is COMPENSATION and found.declaration.id == ids.KOPF_ACHS_NR:
                 self.frame(line)
+                if self.number is not None:
+                    text = f"no axis has this number; this is taken as the list of number {self.number}"
+                    self.compare(line, self.number, text)
             else:
                 if said := said_otherwise(found.declaration, written):
                     text = f"the remark says {said}, the value is {written.value}; the value counts"
@@ -192,9 +215,9 @@ class Checker:
 
         If a list is missing already (`alone`), only single values are checked; the other checks would say so again.
         """
-        text, file = self.text.text, "machine.yaml"
+        text, file = self.text.text, MACHINE_FILE
         try:
-            machine = load_machine(text, file)
+            machine = load_machine(text, file, lambda place: self.origin(place).place)
         except ParameterError as error:
             if not (incomplete or alone):
                 self.refused(error.problems)
@@ -223,7 +246,10 @@ class Checker:
             self.problems.append(ListProblem(problem.error_id, place, problem.text, line))
 
     def origin(self, place: Place) -> Origin:
-        return self.text.origin(place.line, self.nowhere)
+        """Of a place in the machine file, or of one in a list."""
+        if place.file == MACHINE_FILE:
+            return self.text.origin(place.line, self.nowhere)
+        return next((known for known in self.text.origins if known and known.place == place), Origin(place))
 
 
 def add_defaults(sets: Mapping[str, ParameterSet], units: Units, report: Report) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import Final, NamedTuple
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.parameters.errors import Place
+from cnc_ptp.parameters.errors import Place, one_line_each
 
 NOTHING_WRITTEN: Final = "nothing was written"
 SHOWN: Final = 100
@@ -35,9 +35,7 @@ class ListError(CncError):
 
     def __init__(self, problems: Iterable[ListProblem]) -> None:
         self.problems = tuple(sorted(set(problems), key=lambda problem: (problem.place, problem.error_id)))
-        first, *others = self.problems
-        lines = [str(first), *(f"P-ERR-{problem.error_id} {problem}" for problem in others)]
-        super().__init__(first.error_id, "\n".join(lines))
+        super().__init__(self.problems[0].error_id, one_line_each(self.problems))
 
     def __reduce__(self) -> tuple[type[ListError], tuple[tuple[ListProblem, ...]]]:
         return type(self), (self.problems,)

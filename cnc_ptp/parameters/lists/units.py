@@ -86,7 +86,18 @@ def axis_letter(values: Mapping[str, str]) -> str:
 
 
 def find_units(lists: Sequence[ListFile], startup: ListFile | None, problems: list[ListProblem]) -> Units:
-    """The units of the lists, with the names that the start-up list gives."""
+    """The units of the lists, with the names that the start-up list gives.
+
+    If a list is missing, as `problems` has it, what follows from that is not said again.
+    """
+    found: list[ListProblem] = []
+    units = units_of(lists, startup, found)
+    missing = any(problem.error_id in (errors.UNREADABLE, errors.LIST_KIND, errors.LIST_TEXT) for problem in problems)
+    problems += [problem for problem in found if not (missing and problem.error_id in (errors.COUNT, errors.LIST_UNIT))]
+    return units
+
+
+def units_of(lists: Sequence[ListFile], startup: ListFile | None, problems: list[ListProblem]) -> Units:
     units = Units()
     channel_values = {}
     for entry in lists:
@@ -156,8 +167,12 @@ def free_name(unit: Unit, by_number: Mapping[int, str], channels: int, taken: Ma
 
 def add_to_unit(entry: ListFile, units: Sequence[Unit], problems: list[ListProblem]) -> None:
     """Gives a list to the unit that it is for: by its header, by its name, by its place in the start-up list."""
-    unit = header_unit(entry, units) if entry.kind is COMPENSATION else None
-    unit = unit or by_hint(entry, units) or by_place(entry, units) or (units[0] if len(units) == 1 else None)
+    number = header_number(entry) if entry.kind is COMPENSATION else None
+    numbered = [unit for unit in units if number is not None and unit.number == number]
+    unit = numbered[0] if len(numbered) == 1 else by_hint(entry, units) or by_place(entry, units)
+    if unit is None and numbered:  # two axes with one number, which is said elsewhere
+        unit = next((each for each in numbered if entry.kind not in [other.kind for other in each.lists]), None)
+    unit = unit or (units[0] if len(units) == 1 else None)
     what = "axis" if entry.kind is COMPENSATION else "channel"
     if unit is None:
         remedy = "write kopf.achs_nr into it" if entry.kind is COMPENSATION else "give it an index in the start-up list"
@@ -173,10 +188,9 @@ def add_to_unit(entry: ListFile, units: Sequence[Unit], problems: list[ListProbl
     unit.lists.append(entry)
 
 
-def header_unit(entry: ListFile, units: Sequence[Unit]) -> Unit | None:
-    """The axis whose number is in the header of a compensation list."""
-    number = number_in(values_of("axis", entry.lines), "kopf.achs_nr")
-    return next((unit for unit in units if number is not None and unit.number == number), None)
+def header_number(entry: ListFile) -> int | None:
+    """The number of its axis in the header of a compensation list."""
+    return number_in(values_of("axis", entry.lines), "kopf.achs_nr")
 
 
 def by_hint(entry: ListFile, units: Sequence[Unit]) -> Unit | None:

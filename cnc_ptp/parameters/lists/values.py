@@ -20,6 +20,7 @@ _ITEMS: Final = re.compile(rf"(\[\]|{_ITEM}(?:\s*,\s*{_ITEM})*){_END}")
 _ONE_ITEM: Final = re.compile(rf"({_ITEM})(?:\s*,\s*|$)")
 _PLAIN: Final = re.compile(r"[A-Za-z_][\w./-]*(?: \| [A-Za-z_]\w*)*", re.ASCII)
 _BARE: Final = re.compile(r'[^\s#"]+')
+NO_VALUE: Final = "it has no value; write one behind the name, or delete the line"
 NO_ITEMS: Final = "[]"
 """An empty list of names."""
 
@@ -38,7 +39,7 @@ class Written(NamedTuple):
 def split_value(declaration: Declaration, rest: str) -> Written:
     """Value and remark of what stands behind a name. Raises BadLine."""
     if not rest or rest.startswith("#"):
-        raise BadLine("it has no value; write one behind the name, or delete the line")
+        raise BadLine(NO_VALUE)
     pattern = _ITEMS if declaration.type == "strings" else _FLAGS if has_flags(declaration) else _WORD
     found = pattern.match(rest)
     if found is None:

@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from cnc_ptp.parameters import errors
 from cnc_ptp.parameters.declare.declarations import Declaration, Limit, Number, ParameterValue
@@ -115,9 +115,13 @@ def named_bits(declaration: Declaration, text: str) -> int:
         elif name in declaration.names:
             number |= declaration.names[name]
         else:
-            reason = f"value {shown(text)} has {shown(name)}, which is none of {', '.join(declaration.names)}"
-            raise BadValue(errors.OUT_OF_RANGE, reason)
+            raise BadValue(errors.OUT_OF_RANGE, unknown_constant(text, name, declaration.names))
     return number
+
+
+def unknown_constant(value: str, name: str, known: Iterable[str]) -> str:
+    part = f" has {shown(name)}, which" if name != value else ""
+    return f"value {shown(value)}{part} is none of {', '.join(known)}"
 
 
 def constants(declaration: Declaration, value: Value) -> str:
@@ -131,8 +135,7 @@ def constants(declaration: Declaration, value: Value) -> str:
     names = [name.strip() for name in value.split("|")] if declaration.flags else [value]
     for name in names:
         if name not in declaration.choices:
-            text = f"value {shown(value)} has {shown(name)}, which is none of {', '.join(declaration.choices)}"
-            raise BadValue(errors.OUT_OF_RANGE, text)
+            raise BadValue(errors.OUT_OF_RANGE, unknown_constant(value, name, declaration.choices))
     if not declaration.flags:
         return value
     number = 0

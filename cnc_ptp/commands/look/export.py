@@ -1,0 +1,38 @@
+"""`cnc_ptp export`: a topic of a recording as CSV, Parquet or NumPy's .npz."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import cnc_ptp.recording
+from cnc_ptp.commands.output_file import check_output
+from cnc_ptp.commissioning.faults import BAD_OUTPUT
+from cnc_ptp.errors import CncError
+from cnc_ptp.recording.export import WRITERS, export_topic
+
+
+def export(
+    recording: str, topic: str, fields: Sequence[str], begin: float | None, end: float | None, output: str
+) -> int:
+    """Writes `fields` of a topic, all without any, from `begin` to `end` in s. A file that fails is not left."""
+    file = Path(output)
+    if file.suffix.lower() not in WRITERS:
+        *others, last = WRITERS
+        wrong = f"{output}: the file name of an export must end in {', '.join(others)} or {last}"
+        raise CncError(BAD_OUTPUT, wrong, "nothing was started")
+    check_output(output, recording=recording)
+    name = topic if topic.startswith("/") else f"/{topic}"
+    part = file.with_name(f".part.{file.name}")
+    with cnc_ptp.recording.open(recording) as opened:
+        try:
+            count = export_topic(opened, name, part, *fields, start=begin, end=end)
+            part.replace(file)
+        except OSError as error:
+            raise CncError(
+                BAD_OUTPUT, f"{output} cannot be written: {error.strerror}", "the recording is unchanged"
+            ) from None
+        finally:
+            part.unlink(missing_ok=True)
+    print(f"{output}: {count} rows of {name}")
+    return 0

@@ -1,0 +1,150 @@
+"""What is whole in a damaged or cut recording, as a file of its own: `cnc_ptp recover`."""
+
+from __future__ import annotations
+
+import os
+import struct
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from mcap.opcode import Opcode
+from mcap.records import Channel, Metadata, Schema
+from mcap.well_known import MessageEncoding, SchemaEncoding
+from mcap.writer import MCAP0_MAGIC
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.recording.bag import RECORD
+from cnc_ptp.recording.mcap_chunks import KNOWN_OPCODES, MessageRun, RawRecord, RecordReader
+from cnc_ptp.recording.mcap_file import METADATA, MISSING, RECORD_PREFIX, McapFile
+from cnc_ptp.recording.mcap_index import McapIndex
+
+
+@dataclass
+class Recovered:
+    """What was written, and why the rest was not."""
+
+    messages: int = 0
+    lost: list[str] = field(default_factory=list)
+
+
+def recover(source: str | Path, output: str | Path) -> Recovered:
+    """Writes whole records of `source`, chunk by chunk, to `output`; parts that are damaged are left out.
+
+    Raises CncError 26001, 26002 and 26007.
+    """
+    path = Path(source)
+    records = _Records(path)
+    with McapFile(Path(output)) as file:
+        copy = _Copy(records, file, *_names_of_summary(path))
+        for record in records:
+            copy.take(record)
+        if records.end:
+            copy.recovered.lost.append(records.end)
+        if copy.recovered.lost:
+            file.metadata(METADATA, {MISSING: "; ".join(copy.recovered.lost)})
+    return copy.recovered
+
+
+def _names_of_summary(path: Path) -> tuple[dict[int, Schema], dict[int, Channel]]:
+    """Schemas and channels; the chunk in which they were announced may be damaged."""
+    try:
+        index = McapIndex(path)
+    except CncError:
+        return {}, {}
+    index.close()
+    return (index.schemas, index.channels) if index.indexed else ({}, {})
+
+
+class _Records(RecordReader):
+    """The records of the data section that are whole; `end` says why there are no more, if the file was cut."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(path)
+        self.end = ""
+        try:
+            self._stream = path.open("rb")
+            self._size = os.fstat(self._stream.fileno()).st_size
+            begin = self._stream.read(len(MCAP0_MAGIC))
+        except OSError as error:
+            raise self.unreadable(error) from error
+        self.require_magic(begin)
+
+    def __iter__(self) -> Iterator[RawRecord]:
+        offset = len(MCAP0_MAGIC)
+        with self._stream as stream:
+            while True:
+                head = stream.read(RECORD_PREFIX.size)
+                opcode, length = RECORD_PREFIX.unpack(head) if len(head) == RECORD_PREFIX.size else (0, 0)
+                start = offset + RECORD_PREFIX.size
+                if opcode == Opcode.DATA_END:
+                    return
+                if opcode not in KNOWN_OPCODES or length > self._size - start:
+                    self.end = f"nothing whole follows at offset {offset} of {self._size}"
+                    return
+                yield RawRecord(offset, opcode, memoryview(stream.read(length)))
+                offset = start + length
+
+
+class _Copy:
+    """Takes record after record into a new file."""
+
+    def __init__(
+        self, records: _Records, file: McapFile, schemas: dict[int, Schema], channels: dict[int, Channel]
+    ) -> None:
+        self.recovered = Recovered()
+        self._records = records
+        self._file = file
+        self._schemas = dict(schemas)
+        self._channels = dict(channels)
+        self._ids: dict[int, int] = {}
+        """Channel there -> channel here."""
+
+    def take(self, record: RawRecord) -> None:
+        try:
+            if record.opcode == Opcode.CHUNK:
+                self._chunk(record)
+            elif record.opcode == Opcode.ATTACHMENT:
+                part = self._records.attachment(record)
+                self._file.attachment(part.name, part.media_type, part.data, part.log_time)
+            elif record.opcode == Opcode.METADATA:
+                self._metadata(self._records.parse(Metadata.read, record))
+        except CncError as error:
+            if self._file.failed:
+                raise
+            self.recovered.lost.append(error.reason.partition(": corrupt ")[2] or error.reason)
+        except struct.error:
+            self.recovered.lost.append(f"at offset {record.offset}: a record that is too short")
+
+    def _chunk(self, record: RawRecord) -> None:
+        runs: list[MessageRun] = []
+        for item in self._records.in_chunk(record):
+            if isinstance(item, Schema):
+                self._schemas[item.id] = item
+            elif isinstance(item, Channel):
+                self._channels[item.id] = item
+            else:
+                runs.append(item)
+        for run in runs:
+            self._file.messages(self._id_of(run.channel_id, record), run.rows.copy(), run.head["log_time"].copy())
+            self.recovered.messages += len(run.rows)
+        self._file.close_chunk()
+        self._file.finish_chunks()
+
+    def _id_of(self, id: int, record: RawRecord) -> int:
+        if id not in self._ids:
+            channel = self._channels.get(id)
+            schema = self._schemas.get(channel.schema_id) if channel else None
+            if channel is None or schema is None:
+                raise self._records.corrupt(record.offset, f"a message of the unknown channel {id} is in the chunk")
+            if channel.message_encoding != MessageEncoding.CDR or schema.encoding != SchemaEncoding.ROS2:
+                raise self._records.corrupt(record.offset, f"{channel.topic} holds no messages of ROS 2")
+            self._ids[id] = self._file.channel(
+                channel.topic, schema.name, schema.data.decode(errors="replace"), channel.metadata
+            )
+        return self._ids[id]
+
+    def _metadata(self, metadata: Metadata) -> None:
+        """That of rosbag2 is made anew."""
+        if metadata.name != RECORD:
+            self._file.metadata(metadata.name, metadata.metadata)

@@ -1,0 +1,74 @@
+"""`cnc_ptp recover`: a file cut at any byte, a damaged chunk."""
+
+import pytest
+from click.testing import CliRunner
+from mcap.reader import make_reader
+from recording_support import MACHINE, smooth_run
+
+import cnc_ptp.recording
+from cnc_ptp import cli
+from cnc_ptp.errors import CncError
+from cnc_ptp.protocol.blocks import CycleTick
+from cnc_ptp.recording.mcap_index import McapIndex
+from cnc_ptp.recording.reader import read_recording
+from cnc_ptp.recording.recovery import recover
+from cnc_ptp.recording.writer import Recording
+
+
+def messages(path):
+    """As the library's own reader finds them by the summary."""
+    with path.open("rb") as stream:
+        reader = make_reader(stream, validate_crcs=True)
+        return [(channel.topic, message.log_time, message.data) for _, channel, message in reader.iter_messages()]
+
+
+def test_every_byte_at_which_a_file_may_be_cut(tmp_path):
+    whole, cut, output = tmp_path / "whole.mcap", tmp_path / "cut.mcap", tmp_path / "new" / "out.mcap"
+    output.parent.mkdir()
+    with Recording(whole, MACHINE) as recording:
+        for first in range(0, 30, 10):
+            recording.tick(CycleTick(first, 10))
+            recording.flush()
+    data, expected, counts = whole.read_bytes(), messages(whole), []
+    assert len(expected) == 3
+    for size in range(len(data) + 1):
+        cut.write_bytes(data[:size])
+        if size < 8:
+            with pytest.raises(CncError, match="not an MCAP file"):
+                recover(cut, output)
+            continue
+        recovered = recover(cut, output)
+        found = messages(output)
+        assert found == expected[: len(found)] and len(found) == recovered.messages
+        counts.append(len(found))
+    assert counts == sorted(counts) and {*counts} == {0, 1, 2, 3}
+    assert recovered.lost == [] and read_recording(output).complete
+    assert read_recording(output).machine_yaml == MACHINE
+
+
+def test_a_damaged_chunk_is_left_out(tmp_path):
+    path, output = tmp_path / "run.mcap", tmp_path / "out.mcap"
+    smooth_run(path, 3.0, axes=("x",))
+    index = McapIndex(path)
+    [ids] = [index.ids_of("/x/state")]
+    place = [chunk for chunk in index.chunks if not ids.isdisjoint(chunk.indexes)][1]
+    index.close()
+    data = bytearray(path.read_bytes())
+    data[place.offset + place.length // 2] ^= 0x55
+    path.write_bytes(data)
+    result = CliRunner().invoke(cli.main, ["recover", str(path), "-o", str(output)])
+    assert result.exit_code == 0
+    first, lost = result.output.splitlines()
+    assert first.startswith(f"{output}: ") and lost.startswith(f"lost: at offset {place.offset}: the ")
+    with cnc_ptp.recording.open(output) as recording:
+        cycles = recording.columns("/x/state", "cycle")["cycle"].tolist()
+        assert cycles == [*range(1000), *range(2000, 3000)]
+        assert len(recording.columns("/s/state", "cycle")["cycle"]) == 3000
+    recorded = read_recording(output)
+    assert not recorded.complete and recorded.missing.startswith(f"at offset {place.offset}: ")
+
+
+def test_the_recording_itself_is_not_overwritten(tmp_path):
+    smooth_run(tmp_path / "run.mcap", 0.1)
+    result = CliRunner().invoke(cli.main, ["recover", str(tmp_path / "run.mcap"), "-o", str(tmp_path / "run.mcap")])
+    assert result.exit_code == 2 and "would overwrite the recording" in " ".join(result.output.split())
