@@ -2,6 +2,9 @@
 
 What can be made empty (instances, lists, dicts, sets) is made when it is met and filled afterwards, so that objects may
 lead to each other in circles; mappings and sets last, because their keys need their own values then.
+
+Rows are checked before anything is made of them; what they name need not be there, and need not fit. That much is
+expected and is 26151. Any other exception is a mistake in here and stays what it is.
 """
 
 from __future__ import annotations
@@ -10,7 +13,8 @@ import base64
 import enum
 import itertools
 from collections import defaultdict, deque
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from functools import partial
 from typing import Any
 
@@ -18,16 +22,21 @@ import numpy as np
 
 from cnc_ptp.compiled.instances import bare_instance
 from cnc_ptp.state.encoding import Row, named
-from cnc_ptp.state.made_again import AGAIN
+from cnc_ptp.state.faults import damaged
+from cnc_ptp.state.made_again import AGAIN, FAULTS
 from cnc_ptp.state.roots import PACKAGE, Roots, follow
+from cnc_ptp.state.rows import check_rows
 
 MISSING: Any = object()
+IN_THE_MAKING: Any = object()
 
 
 class Decoder:
     """The objects of one state."""
 
     def __init__(self, rows: list[Row], shapes: list[list[Any]], roots: Roots, texts: Mapping[str, str]) -> None:
+        """Raises CncError 26151."""
+        check_rows(rows, shapes)
         self._rows, self._roots, self._texts = rows, roots, texts
         self._shapes = [(kernel_class(name), names) for name, names in shapes]
         self._found: list[Any] = [MISSING] * len(rows)
@@ -35,7 +44,7 @@ class Decoder:
         self._hashed: list[tuple[Any, Row]] = []
 
     def decode(self, value: Any) -> Any:
-        """The object of a value. Raises what Python raises for rows that no state has."""
+        """The object of a value. Raises CncError 26151."""
         for name in AGAIN:
             for number, row in enumerate(self._rows):
                 if row[:2] == ["R", name]:
@@ -45,14 +54,18 @@ class Decoder:
     def _again(self, row: Row) -> Any:
         """Its parts must have all that they lead to."""
         make: Any = AGAIN[row[1]]
-        return make(*[self._complete(value) for value in row[2:]])
+        parts = [self._complete(value) for value in row[2:]]
+        with refused(f"the {row[1]} cannot be made again", *FAULTS):
+            return make(*parts)
 
     def _live(self, row: Row) -> Any:
         """A part of the state of an interpreter, which has come to where it was."""
-        here: Any = self._value(row[1]).state
-        for step in row[2]:
-            here = follow(here, step)
-        return here
+        blocks = self._value(row[1])
+        with refused(f"nothing is at {row[2]}", LookupError, AttributeError, TypeError):
+            here: Any = blocks.state
+            for step in row[2]:
+                here = follow(here, step)
+            return here
 
     def _complete(self, value: Any) -> Any:
         """An object that has all that it leads to."""
@@ -70,8 +83,11 @@ class Decoder:
             return value
         number = value[0]
         found = self._found[number]
+        if found is IN_THE_MAKING:
+            raise damaged(f"row {number} is a part of itself")
         if found is MISSING:
             row = self._rows[number]
+            self._found[number] = IN_THE_MAKING
             found = self._found[number] = MAKE[row[0]](self, row)
             if row[0] in FILL:
                 (self._hashed if row[0] in "sdD" else self._open).append((found, row))
@@ -86,30 +102,46 @@ class Decoder:
         return tuple(self._values(row[1:]))
 
     def _frozenset(self, row: Row) -> Any:
-        return frozenset(self._values(row[1:]))
+        values = self._values(row[1:])
+        with refused("a set", TypeError):
+            return frozenset(values)
 
     def _named_tuple(self, row: Row) -> Any:
-        return tuple.__new__(named_tuple_class(row[1]), self._values(row[2:]))
+        return tuple.__new__(class_of(row[1], tuple), self._values(row[2:]))
 
     def _member(self, row: Row) -> Any:
         cls = kernel_class(row[1])
-        return cls[row[2]] if issubclass(cls, enum.Enum) else MISSING
+        if not issubclass(cls, enum.Enum) or row[2] not in cls.__members__:
+            raise damaged(f"{row[1]} has no member {row[2]}")
+        return cls[row[2]]
 
     def _array(self, row: Row) -> Any:
-        data = np.frombuffer(base64.b64decode(row[3]), dtype=np.dtype(row[1]))
-        return data.reshape(row[2]).copy()
+        with refused("an array", TypeError, ValueError):
+            data = np.frombuffer(base64.b64decode(row[3]), dtype=np.dtype(row[1]))
+            return data.reshape(row[2]).copy()
 
     def _bytes(self, row: Row) -> Any:
-        return base64.b64decode(row[1])
+        with refused("bytes", ValueError):
+            return base64.b64decode(row[1])
 
     def _method(self, row: Row) -> Any:
-        return getattr(self._value(row[1]), row[2])
+        owner = self._value(row[1])
+        with refused("a method", AttributeError):
+            return getattr(owner, row[2])
 
     def _partial(self, row: Row) -> Any:
         """Its keywords are copied when it is made."""
-        keywords = self._rows[row[3][0]]
-        values = self._values(keywords[1:])
-        return partial(self._value(row[1]), *self._value(row[2]), **dict(zip(values[::2], values[1::2], strict=True)))
+        function, arguments, keywords = self._value(row[1]), self._value(row[2]), self._names(row[3])
+        with refused("a partial", TypeError):
+            return partial(function, *arguments, **keywords)
+
+    def _names(self, value: Any) -> dict[str, Any]:
+        """A dict of attributes or keywords, which is needed at once."""
+        row = self._rows[value[0]]
+        if row[0] != "d":
+            raise damaged(f"row {value[0]} holds no names")
+        values = self._values(row[1:])
+        return dict(zip(values[::2], values[1::2], strict=True))
 
     def _iterator(self, row: Row) -> Any:
         return iter(self._values(row[1:]))
@@ -118,16 +150,20 @@ class Decoder:
         return itertools.count(*row[1:])
 
     def _root(self, row: Row) -> Any:
-        return self._roots.at(row[1])
+        with refused(f"nothing is at {row[1]}", LookupError, AttributeError, TypeError):
+            return self._roots.at(row[1])
 
     def _function(self, row: Row) -> Any:
-        return named(row[1], row[2])
+        with refused(f"{row[1]} has no {row[2]}", LookupError, AttributeError):
+            return named(row[1], row[2])
 
     def _text(self, row: Row) -> Any:
+        if row[1] not in self._texts:
+            raise damaged(f"its text {row[1]} is missing")
         return self._texts[row[1]]
 
     def _marked_text(self, row: Row) -> Any:
-        return str.__new__(text_class(row[1]), row[2])
+        return str.__new__(class_of(row[1], str), row[2])
 
     # what is made empty
 
@@ -135,7 +171,7 @@ class Decoder:
         return bare_instance(self._shapes[row[1]][0])
 
     def _exception(self, row: Row) -> Any:
-        cls: Any = kernel_class(row[1])
+        cls = class_of(row[1], Exception)
         return cls.__new__(cls)
 
     def _empty_defaultdict(self, row: Row) -> Any:
@@ -145,8 +181,10 @@ class Decoder:
 
     def _fill_object(self, found: Any, row: Row) -> None:
         cls, names = self._shapes[row[1]]
-        for name, value in zip(names, row[2:], strict=True):
-            set_attribute(cls, found, name, self._value(value))
+        values = self._values(row[2:])
+        for name, value in zip(names, values, strict=True):
+            with refused(f"{cls.__qualname__}.{name}", AttributeError, TypeError):
+                set_attribute(cls, found, name, value)
 
     def _fill_list(self, found: Any, row: Row) -> None:
         found.extend(self._values(row[1:]))
@@ -156,11 +194,13 @@ class Decoder:
 
     def _fill_set(self, found: Any, row: Row) -> None:
         values = self._values(row[1:])
-        self._postpone(found, row, values) or found.update(values)
+        with refused("a set", TypeError):
+            self._postpone(found, row, values) or found.update(values)
 
     def _fill_pairs(self, found: Any, row: Row, begin: int) -> None:
         values = self._values(row[begin:])
-        self._postpone(found, row, values[::2]) or found.update(zip(values[::2], values[1::2], strict=True))
+        with refused("a dict", TypeError):
+            self._postpone(found, row, values[::2]) or found.update(zip(values[::2], values[1::2], strict=True))
 
     def _postpone(self, found: Any, row: Row, keys: list[Any]) -> bool:
         """Objects that were met only now are still empty."""
@@ -177,14 +217,10 @@ class Decoder:
 
     def _fill_exception(self, found: Any, row: Row) -> None:
         found.args = self._value(row[2])
-        row_of_names = self._rows[row[3][0]]
-        values = self._values(row_of_names[1:])
-        vars(found).update(zip(values[::2], values[1::2], strict=True))
+        vars(found).update(self._names(row[3]))
 
     def _fill_marked_text(self, found: Any, row: Row) -> None:
-        row_of_names = self._rows[row[3][0]]
-        values = self._values(row_of_names[1:])
-        vars(found).update(zip(values[::2], values[1::2], strict=True))
+        vars(found).update(self._names(row[3]))
 
 
 MAKE: dict[str, Any] = {
@@ -225,28 +261,30 @@ FILL: dict[str, Any] = {
 
 
 def kernel_class(name: str) -> type:
-    """The class with this name. Raises LookupError for one that is not of this package."""
+    """The class with this name. Raises CncError 26151 for one that is not of this package."""
     module, _, qualified = name.partition(":")
-    found = named(module, qualified)
+    with refused(f"{name} is no class of the kernel", LookupError, AttributeError):
+        found = named(module, qualified)
     if not module.startswith(PACKAGE) or not isinstance(found, type):
-        raise LookupError(f"{name} is no class of the kernel")
+        raise damaged(f"{name} is no class of the kernel")
     return found
 
 
-def named_tuple_class(name: str) -> type[tuple[Any, ...]]:
-    """As kernel_class."""
+def class_of(name: str, kind: type) -> Any:
+    """As kernel_class, for one that is derived of `kind`."""
     found = kernel_class(name)
-    if not issubclass(found, tuple):
-        raise LookupError(f"{name} is no NamedTuple")
+    if not issubclass(found, kind):
+        raise damaged(f"{name} is no {kind.__name__}")
     return found
 
 
-def text_class(name: str) -> type[str]:
-    """As kernel_class."""
-    found = kernel_class(name)
-    if not issubclass(found, str):
-        raise LookupError(f"{name} is no text")
-    return found
+@contextmanager
+def refused(what: str, *errors: type[Exception]) -> Iterator[None]:
+    """The errors that a state may cause which no encoder has made. Raises CncError 26151 for them."""
+    try:
+        yield
+    except errors as error:
+        raise damaged(f"{what}: {error}" if str(error) else what) from error
 
 
 def set_attribute(cls: type, found: Any, name: str, value: Any) -> None:

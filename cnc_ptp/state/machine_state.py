@@ -12,7 +12,7 @@ import json
 from collections.abc import Mapping
 from functools import cache
 from hashlib import blake2b
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import zstandard
 
@@ -28,6 +28,7 @@ from cnc_ptp.state.decoding import Decoder
 from cnc_ptp.state.encoding import Encoder
 from cnc_ptp.state.faults import damaged, other_version
 from cnc_ptp.state.roots import Roots
+from cnc_ptp.state.rows import ROW, is_part
 
 MAGIC: Final = b"CNCS"
 LAYOUT: Final = 1
@@ -71,17 +72,34 @@ class StateStore:
 
     def restore(self, state: bytes) -> MachineState:
         """New units in a state. Raises CncError 26151 for damaged bytes, 26152 for those of another kernel."""
-        content = read(state)
-        try:
-            next_cycle, root, shapes, rows = json.loads(content)
-            runners, blocks = Decoder(rows, shapes, self._roots, self.texts).decode(root)
-            return MachineState(next_cycle, runners, blocks)
-        except RESTORING as error:
-            raise damaged(f"{type(error).__name__}: {error}") from error
+        content = parsed(read(state))
+        if not isinstance(content, list) or len(content) != 4 or type(content[0]) is not int:
+            raise damaged("it is no list of cycle, root, shapes and rows")
+        next_cycle, root, shapes, rows = content
+        if not is_part(root, ROW, len(rows)):
+            raise damaged("its root is no row")
+        found = Decoder(rows, shapes, self._roots, self.texts).decode(root)
+        if not is_machine(found):
+            raise damaged("its root does not hold units and their blocks")
+        return MachineState(next_cycle, *found)
 
 
-RESTORING: Final = (Exception, RecursionError)
-"""Whatever Python raises for rows that no encoder makes."""
+def parsed(content: bytes) -> Any:
+    """Raises CncError 26151."""
+    try:
+        return json.loads(content)
+    except (ValueError, RecursionError) as error:
+        raise damaged(f"it is no JSON: {error}") from error
+
+
+def is_machine(found: Any) -> bool:
+    """Units and their blocks, by name."""
+    if not isinstance(found, list) or len(found) != 2 or not all(isinstance(part, dict) for part in found):
+        return False
+    runners, blocks = found
+    return all(isinstance(runner, UnitRunner) for runner in runners.values()) and all(
+        isinstance(block, CycleBlock) for block in blocks.values()
+    )
 
 
 def interpreters(runners: Mapping[str, UnitRunner]) -> list[RunningBlocks]:

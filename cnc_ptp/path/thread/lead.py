@@ -80,7 +80,7 @@ class QuickFading:
 
     def __init__(self, mismatch: Mismatch, limits: Limits) -> None:
         e, rate, gain = mismatch
-        self._profile: Final[Profile] = plan_to_position(e, rate, gain, 0.0, limits, direct=True)
+        self._profile = plan_to_position(e, rate, gain, 0.0, limits, direct=True)
 
     def at(self, t: float) -> MotionState:
         """As Fading."""
