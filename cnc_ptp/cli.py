@@ -97,6 +97,13 @@ def main(context: click.Context) -> None:
 
 @main.command("simulate")
 @run_options
+@click.option(
+    "--checkpoints",
+    type=click.FloatRange(min=0.0),
+    default=10.0,
+    show_default=True,
+    help="Machine time in s between two checkpoints in the recording, from which a replay can begin; 0: none.",
+)
 def simulate_command(**options: Any) -> None:
     """Run a machine offline, as fast as possible."""
     from cnc_ptp.commands.run.simulate import simulate
@@ -275,12 +282,13 @@ def check_command(**options: Any) -> None:
 @click.option("--commands", type=click.Path(dir_okay=False), help="What if: further commands, as a scenario.")
 @click.option("--output", "-o", type=click.Path(dir_okay=False), help="What if: record the changed run.")
 @click.option("--diff", is_flag=True, help="What if: print the difference (always without --output).")
+@click.option("--diff-page", "page", type=click.Path(dir_okay=False), help="What if: a page of both runs (.html).")
 @namespace_option
 def replay_command(**options: Any) -> None:
     """Compute a recorded run again, also with something changed, or publish the recording."""
     from cnc_ptp.commands.run.replay import replay
 
-    names = ("begin", "end", "parameters", "override", "program", "commands", "output", "diff")
+    names = ("begin", "end", "parameters", "override", "program", "commands", "output", "diff", "page")
     changes = {name: options.pop(name) for name in names}
     if any(value not in (None, (), False) for value in changes.values()):
         if options["verify"] or options["publish"]:
@@ -315,6 +323,17 @@ def part_options(function: Callable[..., Any]) -> Callable[..., Any]:
     ):
         function = option(function)
     return function
+
+
+@main.command("diff")
+@click.argument("first", type=click.Path(dir_okay=False))
+@click.argument("second", type=click.Path(dir_okay=False))
+@click.option("--output", "-o", type=click.Path(dir_okay=False), help="Page of both runs on top of each other (.html).")
+def diff_command(**options: Any) -> None:
+    """Compare two recorded runs of a machine: where they part, largest values, program times."""
+    from cnc_ptp.commands.look.diff import diff
+
+    sys.exit(diff(**options))
 
 
 @main.command("report")

@@ -59,6 +59,11 @@ class OfflineRun:
         return map(self._recorded, self.machine.run(cycles=cycles))
 
     @property
+    def checkpoint_fault(self) -> str:
+        """From when on there is no checkpoint, why, and what that means; empty if none is missing."""
+        return "" if self._checkpoints is None else self._checkpoints.fault
+
+    @property
     def waits_for_trigger(self) -> bool:
         """The condition of the recording has not been true yet."""
         return isinstance(self._recording, TriggeredRecording) and self._recording.begin is None

@@ -93,9 +93,6 @@ class Recorded:
     missing: str = ""
     machine_yaml: str = ""
     attachments: dict[str, str] = field(default_factory=dict)
-    checkpoints: dict[int, bytes] = field(default_factory=dict)
-    """States of the units by the cycle before which they had it (cnc_ptp/state)."""
-    checkpoint_texts: dict[str, str] = field(default_factory=dict)
     metadata: dict[str, str] = field(default_factory=dict)
     topics: dict[str, TopicInfo] = field(default_factory=dict)
     states: dict[str, Records] = field(default_factory=dict)
@@ -245,14 +242,8 @@ class _Reader:
                 self.recorded.metadata.update(metadata.metadata)
 
     def _attachment(self, name: str, data: bytes) -> None:
-        recorded = self.recorded
-        cycle, digest = name.removeprefix(CHECKPOINT), name.removeprefix(CHECKPOINT_TEXT)
-        if digest != name:
-            recorded.checkpoint_texts[digest] = data.decode(errors="surrogatepass")
-        elif cycle != name and cycle.isdecimal():
-            recorded.checkpoints[int(cycle)] = data
-        else:
-            recorded.attachments[name] = data.decode(errors="replace")
+        if not name.startswith((CHECKPOINT, CHECKPOINT_TEXT)):  # of no use but for a replay: run_inputs.py
+            self.recorded.attachments[name] = data.decode(errors="replace")
 
     def finish(self) -> Recorded:
         recorded = self.recorded
@@ -319,21 +310,7 @@ class _Reader:
         )
 
     def _command(self, _time: int, _topic: str, message: Any) -> None:
-        self.recorded.commands.append(
-            CommandRecord(
-                message.cycle,
-                message.target,
-                message.command,
-                message.arguments_json,
-                message.accepted,
-                message.error_id,
-                message.message,
-                getattr(message, "id", 0),
-                read_values(getattr(message, "values_json", "")),
-                getattr(message, "job", 0),
-                getattr(message, "warning_id", 0),
-            )
-        )
+        self.recorded.commands.append(command_record(message))
 
     def _diagnostics(self, time: int, _topic: str, message: Any) -> None:
         for status in message.status:
@@ -349,3 +326,20 @@ def coordinates(channel: str, offsets: Any) -> Coordinates:
     """Of ChannelOffsets; those of older recordings have no origin."""
     origin = tuple(getattr(offsets, "origin", ()))
     return Coordinates(offsets.cycle, channel, tuple(offsets.axes), tuple(offsets.systems), origin)
+
+
+def command_record(message: Any) -> CommandRecord:
+    """Of a CommandRecord message; those of older recordings have fewer fields."""
+    return CommandRecord(
+        message.cycle,
+        message.target,
+        message.command,
+        message.arguments_json,
+        message.accepted,
+        message.error_id,
+        message.message,
+        getattr(message, "id", 0),
+        read_values(getattr(message, "values_json", "")),
+        getattr(message, "job", 0),
+        getattr(message, "warning_id", 0),
+    )

@@ -21,7 +21,8 @@ from cnc_ptp.protocol.blocks import ChannelBlock, Command, CommandRecord, PlcBlo
 from cnc_ptp.protocol.commands import COUPLINGS
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.recording.checkpoints import state_before
-from cnc_ptp.recording.reader import Recorded, iter_messages
+from cnc_ptp.recording.reader import RawMessage
+from cnc_ptp.recording.run_inputs import RunInputs
 from cnc_ptp.state.other_parameters import change_parameters
 from cnc_ptp.wire.block_codec import codec_of
 
@@ -52,11 +53,8 @@ class Change:
 class WhatIf:
     """The changed run. `note` says from where it was computed; `machine_text` and `machine` have the parameters."""
 
-    def __init__(self, recorded: Recorded, change: Change, end_cycle: int) -> None:
-        """`end_cycle`: the cycle after the last recorded one.
-
-        Raises ParameterError, CncError 26153, 26154, 26155, 26157.
-        """
+    def __init__(self, recorded: RunInputs, change: Change) -> None:
+        """`recorded` stays open as long as it runs. Raises ParameterError, CncError 26153, 26154, 26155, 26157."""
         if not recorded.machine_yaml:
             reason = f"recording {recorded.path}: holds no attachment machine.yaml"
             raise CncError(NO_MACHINE, reason, f"{NOTHING}, record it with cnc_ptp")
@@ -68,13 +66,12 @@ class WhatIf:
             self.machine_text = changed_text(recorded.machine_yaml, change.parameters)
             self.machine = load_machine(self.machine_text, f"{recorded.path}:machine.yaml")
         self._cycle_time = self._old.cycle_time_us * 1e-6
-        self.begin = self._block_at(change.begin, end_cycle, "--from")
-        self.end = end_cycle if change.end is None else self._block_at(change.end, end_cycle, "--to")
+        self.begin = self._block_at(change.begin, "--from")
+        self.end = recorded.end if change.end is None else self._block_at(change.end, "--to")
         self._commands = self._recorded_commands()
         self._require_load()
         self.note = ""
-        self._given: set[Given] = set()
-        """Commands that the units give again."""
+        self._given = GivenByUnits(recorded, self.begin, self.begin - self._old.block_cycles)
 
     def run(self) -> Iterator[Outputs]:
         """All blocks from `begin` on. Raises CncError 26156 for parameters that make other parts of a unit."""
@@ -88,9 +85,9 @@ class WhatIf:
         while machine.next_cycle < self.end:
             yield machine.changed_tick(self._changed_commands(machine.next_cycle))
 
-    def _block_at(self, seconds: float, end_cycle: int, option: str) -> int:
+    def _block_at(self, seconds: float, option: str) -> int:
         """The first cycle of the block in which a time lies. Raises CncError 26154."""
-        duration = end_cycle * self._cycle_time
+        duration = self._recorded.end * self._cycle_time
         if not 0.0 <= seconds <= duration:
             reason = f"{option} {seconds:g} is not within the recorded time 0 ... {duration:g} s"
             raise CncError(TIME_OUTSIDE, reason, NOTHING, value=seconds, limit=duration)
@@ -134,7 +131,6 @@ class WhatIf:
                 plc.command(Command.from_record(record))
         plc.unit.take_events()
         plc.unit.take_records()
-        self._given = given_by_units(self._recorded, self.begin)
         return machine
 
     def _changed_commands(self, cycle: int) -> dict[str, list[Command]]:
@@ -150,7 +146,7 @@ class WhatIf:
 
     def _changed(self, record: CommandRecord) -> Command | None:
         change, command = self._change, Command.from_record(record)
-        if (record.cycle, record.target, record.command, record.arguments_json) in self._given:
+        if self._given.has(record):
             return None
         if change.override is not None and command.command == "set_override" and command.target in self._old.channels:
             return None
@@ -165,31 +161,43 @@ ANSWERS: Final = ("acknowledge", "coupling_answer", "gear_changed")
 PLC_SWITCHES: Final = ("auto_acknowledge", "serve")
 
 
-def given_by_units(recorded: Recorded, begin: int) -> set[Given]:
-    """Commands of channels, and the answers of the PLC to what channels and spindles ask for from `begin` on."""
-    count = 0
-    given: set[Given] = set()
-    requests: set[int] = set()
-    topics = {topic for topic, info in recorded.topics.items() if info.type_name in BLOCK_TYPES}
-    for message in iter_messages(recorded.path, topics):
-        block = codec_of(BLOCK_TYPES[message.type_name]).decode(message.cdr)
-        count = max(count, block.count)
-        if block.first_cycle < begin - count:
-            continue
-        is_channel = isinstance(block, ChannelBlock)
-        if is_channel:
-            requests.update(request.id for request in block.requests)
-        for command in block.commands if block.first_cycle >= begin else ():
-            known = command.command != "acknowledge" or command.arguments.get("id") in requests
-            if is_channel or (command.command in ANSWERS and known):
-                given.add((block.first_cycle, command.target, command.command, json_of(command.arguments)))
-    return given
-
-
 BLOCK_TYPES: Final[dict[str, type[ChannelBlock] | type[PlcBlock]]] = {
     "cnc_ptp/msg/ChannelBlock": ChannelBlock,
     "cnc_ptp/msg/PlcBlock": PlcBlock,
 }
+
+
+class GivenByUnits:
+    """Commands of channels, and the answers of the PLC to what channels and spindles ask for from `begin` on.
+
+    Units give them again. Blocks are read as far as the run has come.
+    """
+
+    def __init__(self, recorded: RunInputs, begin: int, before: int) -> None:
+        """`before`: the cycle of the block before; what is asked for in it is answered after it."""
+        self._begin = begin
+        self._known: set[Given] = set()
+        self._requests: set[int] = set()
+        self._reached = -1
+        self._messages = recorded.messages(BLOCK_TYPES, max(0, before))
+
+    def has(self, record: CommandRecord) -> bool:
+        while self._reached <= record.cycle and (message := next(self._messages, None)) is not None:
+            self._take(message)
+        return (record.cycle, record.target, record.command, record.arguments_json) in self._known
+
+    def _take(self, message: RawMessage) -> None:
+        block = codec_of(BLOCK_TYPES[message.type_name]).decode(message.cdr)
+        self._reached = block.first_cycle
+        if block.first_cycle + 2 * block.count <= self._begin:
+            return
+        is_channel = isinstance(block, ChannelBlock)
+        if is_channel:
+            self._requests.update(request.id for request in block.requests)
+        for command in block.commands if block.first_cycle >= self._begin else ():
+            known = command.command != "acknowledge" or command.arguments.get("id") in self._requests
+            if is_channel or (command.command in ANSWERS and known):
+                self._known.add((block.first_cycle, command.target, command.command, json_of(command.arguments)))
 
 
 def by_unit(commands: Sequence[Command]) -> dict[str, list[Command]]:

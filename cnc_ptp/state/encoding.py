@@ -29,6 +29,7 @@ from __future__ import annotations
 import base64
 import enum
 import itertools
+import math
 from collections import OrderedDict, defaultdict, deque
 from collections.abc import Callable, Iterable
 from functools import partial
@@ -43,7 +44,7 @@ from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.streamed_program import StreamedProgram
 from cnc_ptp.state.faults import not_storable
 from cnc_ptp.state.made_again import interpreter_parts, is_open, program_parts
-from cnc_ptp.state.roots import PACKAGE, Path, Roots, attributes
+from cnc_ptp.state.roots import PACKAGE, Path, Roots, attributes, kernel_module
 
 Row = list[Any]
 LONG_TEXT = 500
@@ -282,16 +283,22 @@ def is_reachable(found: Any) -> bool:
         return False
 
 
+HARMLESS = {each.__name__: each for each in (bool, int, float, str, list, dict, set, tuple, frozenset, abs, min, max)}
+"""What a state may name of the language itself."""
+
+
 def named(module: str, name: str) -> Any:
-    """The function or class of a kernel module, of math or of the language. Raises LookupError, AttributeError."""
-    import builtins
-    import math
+    """The function or class of a kernel module, of math or of the language. Raises LookupError, AttributeError.
 
-    from cnc_ptp.state.roots import kernel_module
-
-    here: Any = {"builtins": builtins, "math": math}.get(module) or kernel_module(module)
+    What a module has imported is not its own: a state must not lead to anything that acts on the computer.
+    """
+    if module == "builtins":
+        return HARMLESS[name]
+    here: Any = math if module == "math" else kernel_module(module)
     for part in name.split("."):
         here = getattr(here, part)
+    if (here.__module__, here.__qualname__) != (module, name):
+        raise LookupError(f"{module} has no {name} of its own")
     return here
 
 

@@ -10,10 +10,14 @@ from types import BuiltinFunctionType, FunctionType, MappingProxyType, ModuleTyp
 from typing import Any
 
 from cnc_ptp.compiled.instances import COMPILED, is_compiled
-from cnc_ptp.compiled.sources import sources
+from cnc_ptp.compiled.sources import ROOMS, sources
 from cnc_ptp.errors import CncError
 
 PACKAGE = "cnc_ptp."
+UNIT_ROOMS = (*ROOMS, "parameters", "errors", "number_range")
+"""Parts of the package that objects of a state are from."""
+READ_FILES = ("plc_file", "program_files", "run_entries")
+"""Modules that read files, or execute them; nothing of a unit is from them."""
 PLAIN = (type(None), bool, int, float, complex, str, bytes)
 """Values that have no identity."""
 WITHOUT_PATH = (*PLAIN, type, FunctionType, BuiltinFunctionType)
@@ -128,8 +132,9 @@ def kernel_modules() -> Iterable[ModuleType]:
 
 
 def kernel_module(name: str) -> ModuleType:
-    """Raises LookupError for a name that none has."""
-    if not name.startswith(PACKAGE):
+    """One that units may be of. Raises LookupError for a name that none has."""
+    steps = name.split(".")
+    if not name.startswith(PACKAGE) or steps[1] not in UNIT_ROOMS or steps[-1] in READ_FILES:
         raise LookupError(f"there is no root {name}")
     try:
         return import_module(name)

@@ -14,9 +14,11 @@ from cnc_ptp.commands.run.what_if import compute, what_if
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import machine_text
+from cnc_ptp.recording.mcap_file import McapFile
 from cnc_ptp.recording.offline_run import OfflineRun
 from cnc_ptp.recording.reader import Recorded, read_recording
 from cnc_ptp.recording.run_difference import difference
+from cnc_ptp.recording.run_inputs import RunInputs
 from cnc_ptp.recording.what_if import Change, WhatIf
 
 SPINDLES = "examples/spindles/"
@@ -44,8 +46,9 @@ def record(run: Run, path: Path, *, every: float = 1.0) -> Recorded:
 
 
 def changed(recorded: Recorded, path: Path, change: Change) -> tuple[Recorded, str]:
-    run = WhatIf(recorded, change, end_of(recorded))
-    compute(run, recorded, str(path))
+    with RunInputs(recorded.path) as inputs:
+        run = WhatIf(inputs, change)
+        compute(run, inputs, str(path))
     return read_recording(path), run.note
 
 
@@ -55,7 +58,7 @@ def test_a_run_without_a_change_is_the_recorded_one_from_anywhere(run: Run, tmp_
     duration = end_of(recorded) * recorded.cycle_time_ns * 1e-9
     for share in (0.0, 0.37, 0.8):
         again, note = changed(recorded, tmp_path / f"again{share}.mcap", Change(share * duration))
-        found = difference(recorded, again)
+        found = difference(recorded.path, again.path)
         assert found.parts_at is None, (share, note, [row for row in found.rows if row.parts_at is not None][:3])
         assert not share or duration * share < 1.0 or note.startswith("computed from the checkpoint at ")
         events = [event for event in recorded.events if event.cycle >= round(share * duration * 1000) + 20]
@@ -86,7 +89,7 @@ def test_a_changed_kv_acts_from_its_time_on(mill: Recorded, tmp_path: Path) -> N
     velocity, after = steady(again, 5.5)
     assert velocity == pytest.approx(40.0)
     assert before / after == pytest.approx(8000 / OLD_KV, rel=2e-3)
-    assert difference(mill, again).parts_at == pytest.approx(3.0, abs=0.02)
+    assert difference(mill.path, again.path).parts_at == pytest.approx(3.0, abs=0.02)
 
 
 def test_an_override_of_half_makes_the_rest_of_the_program_twice_as_long(mill: Recorded, tmp_path: Path) -> None:
@@ -102,8 +105,8 @@ def test_the_spindle_gets_what_the_changed_program_says(mill: Recorded, tmp_path
 
 
 def refusal(mill: Recorded, change: Change) -> str:
-    with pytest.raises(CncError) as refused:
-        WhatIf(mill, change, end_of(mill))
+    with RunInputs(mill.path) as inputs, pytest.raises(CncError) as refused:
+        WhatIf(inputs, change)
     return str(refused.value)
 
 
@@ -128,24 +131,20 @@ def test_refusals(mill: Recorded, tmp_path: Path) -> None:
         "P-ERR-26157 --program takes the place of a program that is loaded after --from, and the last one is loaded "
         "at 0 s; nothing was computed"
     )
-    assert refusal(Recorded(tmp_path / "foreign.mcap"), Change()) == (
-        f"P-ERR-26155 recording {tmp_path}/foreign.mcap: holds no attachment machine.yaml; nothing was computed, "
-        "record it with cnc_ptp"
+
+
+def test_a_recording_without_a_machine_file_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "foreign.mcap"
+    McapFile(path).close()
+    assert refusal(Recorded(path), Change()) == (
+        f"P-ERR-26155 recording {path}: holds no attachment machine.yaml; nothing was computed, record it with cnc_ptp"
     )
-
-
-def test_without_checkpoints_all_is_computed_from_0(mill: Recorded, tmp_path: Path) -> None:
-    mill = read_recording(mill.path)
-    mill.checkpoints.clear()
-    again, note = changed(mill, tmp_path / "again.mcap", Change(2.0))
-    assert note == "computed from 0 s: the recording has no checkpoint before it"
-    assert difference(mill, again).parts_at is None
 
 
 def test_recordings_of_different_machines_are_not_compared(mill: Recorded, tmp_path: Path) -> None:
     other = record(Run("config/ptp.yaml", scenario="examples/trajectory.yaml", seconds=0.5), tmp_path / "ptp.mcap")
     with pytest.raises(CncError) as refused:
-        difference(mill, other)
+        difference(mill.path, other.path)
     assert str(refused.value).startswith("P-ERR-26158 the recordings are of different machines: ")
     assert str(refused.value).endswith("; nothing was compared")
 

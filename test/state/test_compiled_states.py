@@ -31,12 +31,9 @@ def is_final(annotation: ast.expr | None) -> bool:
 
 def final_attributes(source: str) -> list[str]:
     """Attributes of instances that are `Final`: declared with a value in a method, or without one in the class."""
-    found = []
-    for part in ast.walk(ast.parse(source)):
-        if isinstance(part, ast.AnnAssign) and is_final(part.annotation):
-            if isinstance(part.target, ast.Attribute) or part.value is None:
-                found.append(ast.unparse(part))
-    return found
+    declared = [part for part in ast.walk(ast.parse(source)) if isinstance(part, ast.AnnAssign)]
+    finals = [part for part in declared if is_final(part.annotation)]
+    return [ast.unparse(part) for part in finals if isinstance(part.target, ast.Attribute) or part.value is None]
 
 
 def test_final_attributes_are_found() -> None:
@@ -100,16 +97,15 @@ print(KERNEL.kind)
 CONTINUE = """
 import sys
 from cnc_ptp import KERNEL
-from cnc_ptp.commands.run.replay import end_of
 from cnc_ptp.commands.run.what_if import compute
-from cnc_ptp.recording.reader import read_recording
 from cnc_ptp.recording.run_difference import difference
+from cnc_ptp.recording.run_inputs import RunInputs
 from cnc_ptp.recording.what_if import Change, WhatIf
 
-recorded = read_recording(sys.argv[1])
-run = WhatIf(recorded, Change(5.0), end_of(recorded))
+recorded = RunInputs(sys.argv[1])
+run = WhatIf(recorded, Change(5.0))
 compute(run, recorded, sys.argv[2])
-print(KERNEL.kind, run.note, difference(recorded, read_recording(sys.argv[2])).parts_at, sep="; ")
+print(KERNEL.kind, run.note, difference(sys.argv[1], sys.argv[2]).parts_at, sep="; ")
 """
 
 

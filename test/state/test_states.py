@@ -15,7 +15,7 @@ from cnc_ptp.parameters import load_machine
 from cnc_ptp.parameters.changed import changed_text
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import Command
-from cnc_ptp.state import machine_state
+from cnc_ptp.state import decoding, machine_state
 from cnc_ptp.state.machine_state import StateStore
 
 SPINDLES, FIGURES = "examples/spindles/", "examples/figures/"
@@ -126,23 +126,99 @@ def sealed(text: bytes) -> bytes:
     return head + machine_state.check_sum(rest) + rest
 
 
-@pytest.mark.parametrize(
-    "content",
-    [
-        b"",
-        b"[]",
-        b"[0,[0],[],[]]",
-        b'[0,[0],[],[["z"]]]',
-        b'[0,[0],[],[["F","os","system"]]]',
-        b'[0,[0],[["subprocess:Popen",["args"]]],[["o",0,1]]]',
-        b'[0,[0],[["cnc_ptp.cli:os.system",["args"]]],[["o",0,1]]]',
-        b'[0,[0],[],[["t",[0]]]]',
-    ],
-)
+WRONG = {
+    b"": "it is no JSON: Expecting value: line 1 column 1 (char 0)",
+    b"[]": "it is no list of cycle, root, shapes and rows",
+    b"[0,[0],[],[]]": "its root is no row",
+    b"[0,[0],[],{}]": "its root is no row",
+    b'[0,[0],{},{"0":1}]': "it has no lists of rows and shapes",
+    b'[0,[0],[],[["z"]]]': "row 0 has no form: ['z']",
+    b'[0,[0],[],["l"]]': "row 0 has no form: 'l'",
+    b'[0,[0],[],[["t",[7]]]]': "row 0 has no form: ['t', [7]]",
+    b'[0,[0],[],[["d",1,2,3]]]': "row 0 has no form: ['d', 1, 2, 3]",
+    b'[0,[0],[],[["o",0]]]': "row 0 has no form: ['o', 0]",
+    b'[0,[0],[],[["R","os"]]]': "row 0 has no form: ['R', 'os']",
+    b'[0,[0],[[1,[]]],[["l"]]]': "a shape is [1, []]",
+    b'[0,[0],[["a",[1]]],[["l"]]]': "a shape is ['a', [1]]",
+    b'[0,[0],[],[["F","os","system"]]]': "os has no system: there is no root os",
+    b'[0,[0],[],[["F","builtins","exec"]]]': "builtins has no exec: 'exec'",
+    b'[0,[0],[],[["F","cnc_ptp.compiled.build","os.system"]]]': (
+        "cnc_ptp.compiled.build has no os.system: there is no root cnc_ptp.compiled.build"
+    ),
+    b'[0,[0],[],[["F","cnc_ptp.machine.plc_file","read_plc"]]]': (
+        "cnc_ptp.machine.plc_file has no read_plc: there is no root cnc_ptp.machine.plc_file"
+    ),
+    b'[0,[0],[],[["F","cnc_ptp.errors","get_close_matches"]]]': (
+        "cnc_ptp.errors has no get_close_matches: cnc_ptp.errors has no get_close_matches of its own"
+    ),
+    b'[0,[0],[],[["F","cnc_ptp.nc.nope","system"]]]': (
+        "cnc_ptp.nc.nope has no system: No module named 'cnc_ptp.nc.nope'"
+    ),
+    b'[0,[0],[["subprocess:Popen",["args"]]],[["o",0,1]]]': (
+        "subprocess:Popen is no class of the kernel: there is no root subprocess"
+    ),
+    b'[0,[0],[["cnc_ptp.errors:nearest_name",["a"]]],[["o",0,1]]]': (
+        "cnc_ptp.errors:nearest_name is no class of the kernel"
+    ),
+    b'[0,[0],[],[["n","cnc_ptp.errors:CncError",1]]]': "cnc_ptp.errors:CncError is no tuple",
+    b'[0,[0],[],[["e","cnc_ptp.protocol.blocks:Severity","LOUD"]]]': (
+        "cnc_ptp.protocol.blocks:Severity has no member LOUD"
+    ),
+    b'[0,[0],[],[["a","<f8",[3],"AAAA"]]]': "an array: buffer size must be a multiple of element size",
+    b'[0,[0],[],[["b","A"]]]': (
+        "bytes: Invalid base64-encoded string: number of data characters (1) cannot be 1 more than a multiple of 4"
+    ),
+    b'[0,[0],[],[["m",1,"nope"]]]': "a method: 'int' object has no attribute 'nope'",
+    b'[0,[0],[],[["p",1,[1],[2]],["t"],["d"]]]': "a partial: the first argument must be callable",
+    b'[0,[0],[],[["p",1,[1],[1]],["t"]]]': "row 1 holds no names",
+    b'[0,[0],[],[["g",["machine","nope"]]]]': (
+        "nothing is at ['machine', 'nope']: 'MachineParameters' object has no attribute 'nope'"
+    ),
+    b'[0,[0],[],[["x","77"]]]': "its text 77 is missing",
+    b'[0,[0],[],[["f",[1]],["l"]]]': "a set: unhashable type: 'list'",
+    b'[0,[0],[],[["s",[1]],["l"]]]': "a set: unhashable type: 'list'",
+    b'[0,[0],[],[["d",[1],1],["l"]]]': "a dict: unhashable type: 'list'",
+    b'[0,[0],[],[["t",[0]]]]': "row 0 is a part of itself",
+    b'[0,[0],[],[["L",1,["a"]]]]': "nothing is at ['a']: 'int' object has no attribute 'state'",
+    b'[0,[0],[["cnc_ptp.motion.profile:Profile",["nope"]]],[["o",0,1]]]': (
+        "Profile.nope: 'Profile' object has no attribute 'nope'"
+    ),
+    b'[0,[0],[],[["l"]]]': "its root does not hold units and their blocks",
+    b'[0,[0],[],[["l",[1],[1]],["d","x",1]]]': "its root does not hold units and their blocks",
+}
+"""What no encoder makes, and why it is refused."""
+
+
+@pytest.mark.parametrize("content", WRONG, ids=lambda content: content.decode())
 def test_content_of_another_maker_is_refused(content: bytes) -> None:
-    with pytest.raises(CncError) as refused:
-        StateStore(MILL).restore(sealed(content))
-    assert refused.value.number == 26151
+    text = refusal(StateStore(MILL), sealed(content))
+    assert text == f"P-ERR-26151 checkpoint: the state is damaged: {WRONG[content]}; nothing was restored"
+
+
+def test_a_mistake_of_the_decoder_is_not_taken_for_a_damaged_state(monkeypatch: pytest.MonkeyPatch) -> None:
+    store = StateStore(MILL)
+    state = a_state(store)
+
+    def broken(_decoder: object, _row: object) -> None:
+        raise AttributeError("a mistake")
+
+    monkeypatch.setitem(decoding.MAKE, "t", broken)
+    with pytest.raises(AttributeError, match="a mistake"):
+        store.restore(state)
+
+
+def test_a_program_that_has_another_course_now_is_refused() -> None:
+    """The text that belongs to the state is another one, with a fault where the program was."""
+    offline = OfflineMachine(MILL, build_units(MILL, scenario=entries(WAITING.ljust(600))))
+    for _ in range(40):
+        offline.tick()
+    store = StateStore(MILL)
+    state = store.encode(offline)
+    assert len(store.texts) == 1
+    store.texts = dict.fromkeys(store.texts, "G01 X10 F100\nM30".ljust(600))
+    assert refusal(store, state).startswith(
+        "P-ERR-26151 checkpoint: the state is damaged: the interpreter cannot be made again"
+    )
 
 
 def test_the_texts_of_the_refusals() -> None:

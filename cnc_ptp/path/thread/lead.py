@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from typing import Final, Protocol
 
-from cnc_ptp.motion import Limits, Profile, plan_to_position
+from cnc_ptp.motion import Limits, plan_to_position
 from cnc_ptp.motion.setpoints import MotionState
 
 LOOKS: Final = 8
