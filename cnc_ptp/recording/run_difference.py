@@ -50,7 +50,7 @@ class Curve(NamedTuple):
 
 
 class RunDifference(NamedTuple):
-    """`program_times` of the channels (s with the program running) in both."""
+    """`program_times` of the channels (s with the program running) in both, from `begin` on."""
 
     rows: list[Row]
     program_times: dict[str, tuple[float, float]]
@@ -90,15 +90,15 @@ class Both:
         times: dict[str, tuple[float, float]] = {}
         spans: list[tuple[float, float]] = []
         for unit in units_of(self.machine):
-            columns = self._columns(unit, (*COMPARED, STATE))
+            columns = self._columns(unit, COMPARED)
             if columns is None:
                 continue
             cycles, mine, other = columns
-            spans.append((float(cycles[0]) * self._cycle_time, float(cycles[-1]) * self._cycle_time))
             seconds = cycles * self._cycle_time
+            spans.append((float(seconds[0]), float(seconds[-1])))
             rows += [row(Curve(unit, name, seconds, mine[name], other[name])) for name in COMPARED if name in mine]
             if unit in self.machine.channels:
-                times[unit] = (self._running_time(mine[STATE]), self._running_time(other[STATE]))
+                times[unit] = self._program_times(unit, float(seconds[0]))
         begin = min((span[0] for span in spans), default=0.0)
         return RunDifference(rows, times, begin, max((span[1] for span in spans), default=0.0))
 
@@ -147,9 +147,11 @@ class Both:
         names = wanted[1:]
         return common, {name: first[name][mine] for name in names}, {name: second[name][others] for name in names}
 
-    def _running_time(self, states: Numbers) -> float:
-        """How long a channel was neither idle nor ready."""
-        return float(np.count_nonzero(~np.isin(states, RESTING))) * self._cycle_time
+    def _program_times(self, channel: str, begin: float) -> tuple[float, float]:
+        """How long a channel was neither idle nor ready in each run, from `begin` to its own end."""
+        states = [file.columns(f"/{channel}/state", STATE, start=begin)[STATE] for file in self._files]
+        first, second = (float(np.count_nonzero(~np.isin(of, RESTING))) * self._cycle_time for of in states)
+        return first, second
 
 
 def same_machine(first: OpenRecording, second: OpenRecording) -> MachineParameters:

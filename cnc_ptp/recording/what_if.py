@@ -18,6 +18,7 @@ from cnc_ptp.parameters import MachineParameters, load_machine
 from cnc_ptp.parameters.changed import changed_text
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import ChannelBlock, Command, CommandRecord, PlcBlock, json_of
+from cnc_ptp.protocol.channel_states import ChannelStateCode
 from cnc_ptp.protocol.commands import COUPLINGS
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.recording.checkpoints import state_before
@@ -34,7 +35,7 @@ NOTHING: Final = "nothing was computed"
 
 @dataclass(frozen=True)
 class Change:
-    """What is to be different from `begin` (s) on; the run is followed to `end`, None: as long as it was recorded.
+    """What is to be different from `begin` (s) on; the run is followed to `end` (s), None: as long as it was recorded.
 
     parameters  unit.parameter=value
     override    of all channels, percent; recorded ones no longer count
@@ -66,11 +67,13 @@ class WhatIf:
             self.machine_text = changed_text(recorded.machine_yaml, change.parameters)
             self.machine = load_machine(self.machine_text, f"{recorded.path}:machine.yaml")
         self._cycle_time = self._old.cycle_time_us * 1e-6
-        self.begin = self._block_at(change.begin, "--from")
-        self.end = recorded.end if change.end is None else self._block_at(change.end, "--to")
+        self.begin = self._block_at(change.begin)
+        self.end = recorded.end if change.end is None else self._end_at(change.end)
         self._commands = self._recorded_commands()
         self._require_load()
         self.note = ""
+        self.running: list[str] = []
+        """Channels whose program has not ended so far."""
         self._given = GivenByUnits(recorded, self.begin, self.begin - self._old.block_cycles)
 
     def run(self) -> Iterator[Outputs]:
@@ -83,13 +86,23 @@ class WhatIf:
             changed.go_on_from(machine.next_cycle, runners, blocks)
             machine = changed
         while machine.next_cycle < self.end:
-            yield machine.changed_tick(self._changed_commands(machine.next_cycle))
+            outputs = machine.changed_tick(self._changed_commands(machine.next_cycle))
+            channels = [name for name, each in outputs.items() if isinstance(each.block, ChannelBlock)]
+            self.running = [name for name in channels if outputs[name].block.state[-1] not in RESTING]
+            yield outputs
 
-    def _block_at(self, seconds: float, option: str) -> int:
+    def _end_at(self, seconds: float) -> int:
+        """It may be later than what is recorded. Raises CncError 26154."""
+        if seconds < self._change.begin:
+            reason = f"--to {seconds:g} is before --from {self._change.begin:g}"
+            raise CncError(TIME_OUTSIDE, reason, NOTHING, value=seconds, limit=self._change.begin)
+        return round(seconds / self._cycle_time)
+
+    def _block_at(self, seconds: float) -> int:
         """The first cycle of the block in which a time lies. Raises CncError 26154."""
         duration = self._recorded.end * self._cycle_time
         if not 0.0 <= seconds <= duration:
-            reason = f"{option} {seconds:g} is not within the recorded time 0 ... {duration:g} s"
+            reason = f"--from {seconds:g} is not within the recorded time 0 ... {duration:g} s"
             raise CncError(TIME_OUTSIDE, reason, NOTHING, value=seconds, limit=duration)
         count = self._old.block_cycles
         return round(seconds / self._cycle_time) // count * count
@@ -158,6 +171,7 @@ class WhatIf:
 Given = tuple[int, str, str, str]
 """Cycle, target, name and arguments of a command."""
 ANSWERS: Final = ("acknowledge", "coupling_answer", "gear_changed")
+RESTING: Final = (ChannelStateCode.IDLE, ChannelStateCode.READY)
 PLC_SWITCHES: Final = ("auto_acknowledge", "serve")
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
@@ -47,8 +48,8 @@ def print_difference(found: RunDifference) -> None:
         console.print("both runs are equal to the bit")
         return
     console.print(f"the runs part at {found.parts_at:g} s")
-    table = Table("unit", "column", "largest", "now", "largest difference", "at s", "parts at s")
+    table = Table("unit", "column", "largest", "now", "differ by", "at s", "part at s", box=SIMPLE_HEAD, pad_edge=False)
     for row in parted:
         numbers = [f"{value:.6g}" for value in (row.first, row.second, row.difference)]
-        table.add_row(row.unit, row.column, *numbers, f"{row.at:.3f}", f"{row.parts_at:.3f}")
+        table.add_row(row.unit, row.column.replace("_", " "), *numbers, f"{row.at:.3f}", f"{row.parts_at:.3f}")
     console.print(table)

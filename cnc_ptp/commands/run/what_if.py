@@ -32,7 +32,7 @@ def what_if(
     diff: bool,
     page: str | None = None,
 ) -> int:
-    """Computes, records to `output`; prints the difference if there is no output, or if `diff` or a page asks for it."""
+    """Computes, records to `output`; prints the difference if there is no output, or `diff` or a page asks for it."""
     check_recording(output, recording=recording, NC_program=program, commands=commands)
     check_diff_page(page, recording=recording, NC_program=program, commands=commands)
     with RunInputs(recording) as recorded, TemporaryDirectory() as folder:
@@ -41,6 +41,8 @@ def what_if(
         path = output or str(Path(folder) / "what_if.mcap")
         compute(run, recorded, path)
         print(f"note: {run.note}" if run.note else "computed from 0 s")
+        for channel in run.running:
+            print(f"note: the program of {channel} has not ended; --to a later time computes more of it")
         if diff or page or output is None:
             names = (Path(recording).name, Path(output).name if output else "changed")
             show_difference(recording, path, page, names)
