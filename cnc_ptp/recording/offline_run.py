@@ -14,7 +14,7 @@ from cnc_ptp.protocol.unit import PLC, Unit
 from cnc_ptp.recording.checkpoints import CHECKPOINT_SECONDS, Checkpoints
 from cnc_ptp.recording.mcap_file import NOT_WRITTEN
 from cnc_ptp.recording.trigger import Condition, TriggeredRecording, make_recording
-from cnc_ptp.recording.writer import Recording
+from cnc_ptp.recording.writer import PLC_FILE, Recording
 
 
 class OfflineRun:
@@ -57,6 +57,11 @@ class OfflineRun:
     def run(self, *, cycles: int | None = None) -> Iterator[Outputs]:
         """Block by block to the end of the run, as OfflineMachine.run."""
         return map(self._recorded, self.machine.run(cycles=cycles))
+
+    def attach_plc(self, name: str, text: str) -> None:
+        """Keeps the text of a PLC in a file in the recording."""
+        if self._recording is not None:
+            self._recording.attachment(f"{PLC_FILE}{name}", "text/x-python", text)
 
     @property
     def checkpoint_fault(self) -> str:

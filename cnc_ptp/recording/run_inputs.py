@@ -16,7 +16,7 @@ from cnc_ptp.protocol.blocks import CommandRecord
 from cnc_ptp.recording.mcap_file import METADATA
 from cnc_ptp.recording.mcap_index import ChunkPlace, McapIndex
 from cnc_ptp.recording.reader import COMMAND, STATE_TYPES, TICK, RawMessage, command_record
-from cnc_ptp.recording.writer import CHECKPOINT, CHECKPOINT_TEXT, MACHINE_FILE
+from cnc_ptp.recording.writer import CHECKPOINT, CHECKPOINT_TEXT, MACHINE_FILE, PLC_FILE
 from cnc_ptp.wire.schemas import full_name
 from cnc_ptp.wire.ticks import decode_tick
 
@@ -27,6 +27,7 @@ class RunInputs:
     machine_yaml  empty if it has none
     commands      in the order of their cycles
     checkpoints   cycles before which there is one
+    plc_file      name of the PLC in a file that served the run, empty if none did
     end           the cycle after the last one
 
     Raises CncError 26001 to 26003.
@@ -44,6 +45,8 @@ class RunInputs:
         self.machine_yaml = self._attached_text(MACHINE_FILE)
         numbers = [name.removeprefix(CHECKPOINT) for name in self._index.attachments if name.startswith(CHECKPOINT)]
         self.checkpoints = sorted(int(number) for number in numbers if number.isdecimal())
+        names = [name for name in self._index.attachments if name.startswith(PLC_FILE)]
+        self.plc_file = names[0].removeprefix(PLC_FILE) if names else ""
         self.commands = sorted(self._read_commands(), key=lambda record: record.cycle)
         self.end = self._end()
 

@@ -31,6 +31,8 @@ TWO_TYPES = 26008
 CLOSED = 26009
 ROOM = bytes(HEAD_SIZE)  # for the record head in front of each message
 MACHINE_FILE = "machine.yaml"
+PLC_FILE = "plc/"
+"""Attachment with the PLC in a file that served the run; its name ends with that of the file."""
 CHECKPOINT = "checkpoint/"
 """Attachments with states of the units: their names end with the first cycle behind it."""
 CHECKPOINT_TEXT = "checkpoint_text/"

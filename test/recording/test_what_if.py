@@ -30,6 +30,10 @@ RUNS = [
     Run(SPINDLES + "gears_programmed.yaml", SPINDLES + "gears_programmed.nc"),
     Run(SPINDLES + "synchronous.yaml", SPINDLES + "override.nc", SPINDLES + "override.yaml"),
     Run("config/ptp.yaml", scenario="examples/figures/slave_flying_saw.yaml"),
+    Run("config/lathe.yaml", "examples/threads/chain.nc"),
+    Run("config/mill.yaml", "examples/tapping.nc"),
+    Run("config/gantry.yaml", scenario="examples/figures/slave_gantry.yaml"),
+    Run(SPINDLES + "two_channels.yaml", SPINDLES + "channel1.nc", SPINDLES + "two_channels_start.yaml"),
 ]
 
 

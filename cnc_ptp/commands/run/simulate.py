@@ -6,6 +6,7 @@ import gc
 import time
 from collections import defaultdict
 from dataclasses import dataclass, field
+from pathlib import Path
 from types import FrameType
 
 from rich.console import Console
@@ -98,6 +99,8 @@ def simulate(
     run = OfflineRun(
         parameters, units, record=record, machine_text=text, condition=condition, checkpoint_seconds=checkpoints
     )
+    if plc is not None:
+        run.attach_plc(Path(plc).name, Path(plc).read_text(encoding="utf-8"))
     cycles = None if duration is None else round(duration * 1e6 / parameters.cycle_time_us)
     result = Result()
     gc.freeze()  # what was loaded stays to the end: nothing to be searched for garbage

@@ -39,8 +39,13 @@ def what_if(
         change = Change(begin, end, parameters, override, load_of(recorded, program), entries_of(recorded, commands))
         run = WhatIf(recorded, change)
         path = output or str(Path(folder) / "what_if.mcap")
-        compute(run, recorded, path)
+        refused = compute(run, recorded, path)
         print(f"note: {run.note}" if run.note else "computed from 0 s")
+        if recorded.plc_file:
+            text = "is not executed again; what it took time for is acknowledged at once"
+            print(f"note: the PLC {recorded.plc_file} {text}")
+        for text in refused:
+            print(f"note: {text}")
         for channel in run.running:
             print(f"note: the program of {channel} has not ended; --to a later time computes more of it")
         if diff or page or output is None:
@@ -49,11 +54,19 @@ def what_if(
     return 0
 
 
-def compute(run: WhatIf, recorded: RunInputs, path: str) -> None:
+def compute(run: WhatIf, recorded: RunInputs, path: str) -> list[str]:
+    """Records the run; texts of the commands that were refused and had not been in the recorded run."""
+    known = {(record.cycle, record.target, record.command) for record in recorded.commands if not record.accepted}
+    refused: list[str] = []
     notes = {"what_if_of": recorded.path.name, **origin()}
     with Recording(path, run.machine_text, recorded.start_ns, recorded.cycle_time_ns, notes=notes) as recording:
         for outputs in run.run():
             write(recording, outputs)
+            for record in [record for output in outputs.values() for record in output.records if not record.accepted]:
+                if (record.cycle, record.target, record.command) not in known:
+                    at = record.cycle * recorded.cycle_time_ns * 1e-9
+                    refused.append(f"{record.command} to {record.target} at {at:g} s is refused: {record.message}")
+    return refused
 
 
 def load_of(recorded: RunInputs, program: str | None) -> dict[str, object] | None:
