@@ -140,7 +140,7 @@ class McapIndex(RecordReader):
         return self.parse(Footer.read, record).summary_start or None
 
     def _read_summary(self, start: int) -> None:
-        for record in self._records(start):
+        for record in self._summary_records(start):
             self._take_name(record)
             if record.opcode == Opcode.STATISTICS:
                 self.counts = self.parse(Statistics.read, record).channel_message_counts
@@ -176,6 +176,18 @@ class McapIndex(RecordReader):
                 self.chunks.append(ChunkPlace(first, last, record.offset, len(record.body), NO_INDEX))
                 for item in self.in_chunk(record):
                     self._count(item)
+
+    def _summary_records(self, start: int) -> Iterator[RawRecord]:
+        """They are many and small: one call reads all."""
+        data = memoryview(self._bytes(start, self._size - start))
+        offset = 0
+        while offset + RECORD_PREFIX.size <= len(data):
+            opcode, length = RECORD_PREFIX.unpack_from(data, offset)
+            begin = offset + RECORD_PREFIX.size
+            if opcode == Opcode.FOOTER or length > len(data) - begin:
+                return
+            yield RawRecord(start + offset, opcode, data[begin : begin + length])
+            offset = begin + length
 
     def _records(self, offset: int) -> Iterator[RawRecord]:
         """The whole records from an offset on."""

@@ -12,6 +12,7 @@ from __future__ import annotations
 import base64
 import enum
 import itertools
+import json
 from collections import defaultdict, deque
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -21,11 +22,11 @@ from typing import Any
 import numpy as np
 
 from cnc_ptp.compiled.instances import bare_instance
-from cnc_ptp.state.encoding import Row, named
+from cnc_ptp.state.encoding import Row, digest_of, named
 from cnc_ptp.state.faults import damaged
 from cnc_ptp.state.made_again import AGAIN, FAULTS
 from cnc_ptp.state.roots import PACKAGE, Roots, follow
-from cnc_ptp.state.rows import check_rows
+from cnc_ptp.state.rows import ROW, check_rows, is_part
 
 MISSING: Any = object()
 IN_THE_MAKING: Any = object()
@@ -39,6 +40,7 @@ class Decoder:
         check_rows(rows, shapes)
         self._rows, self._roots, self._texts = rows, roots, texts
         self._shapes = [(kernel_class(name), names) for name, names in shapes]
+        self._classes: dict[tuple[str, type], Any] = {}
         self._found: list[Any] = [MISSING] * len(rows)
         self._open: list[tuple[Any, Row]] = []
         self._hashed: list[tuple[Any, Row]] = []
@@ -107,7 +109,13 @@ class Decoder:
             return frozenset(values)
 
     def _named_tuple(self, row: Row) -> Any:
-        return tuple.__new__(class_of(row[1], tuple), self._values(row[2:]))
+        return tuple.__new__(self._class(row[1], tuple), self._values(row[2:]))
+
+    def _class(self, name: str, kind: type) -> Any:
+        found = self._classes.get((name, kind))
+        if found is None:
+            found = self._classes[name, kind] = class_of(name, kind)
+        return found
 
     def _member(self, row: Row) -> Any:
         cls = kernel_class(row[1])
@@ -146,6 +154,18 @@ class Decoder:
     def _iterator(self, row: Row) -> Any:
         return iter(self._values(row[1:]))
 
+    def _iterator_beside(self, row: Row) -> Any:
+        with refused("a list", ValueError):
+            content = json.loads(self._text(row))
+        if not isinstance(content, list) or len(content) != 3 or not is_part(content[0], ROW, len(content[2])):
+            raise damaged("a list beside it has no form")
+        value, shapes, rows = content
+        items = rows[value[0]]
+        if not isinstance(items, list) or items[:1] != ["l"]:
+            raise damaged("a list beside it is none")
+        del items[1 : 1 + row[2]]
+        return iter(Decoder(rows, shapes, self._roots, self._texts).decode(value))
+
     def _count(self, row: Row) -> Any:
         return itertools.count(*row[1:])
 
@@ -160,7 +180,10 @@ class Decoder:
     def _text(self, row: Row) -> Any:
         if row[1] not in self._texts:
             raise damaged(f"its text {row[1]} is missing")
-        return self._texts[row[1]]
+        text = self._texts[row[1]]
+        if digest_of(text) != row[1]:
+            raise damaged(f"its text {row[1]} is another one")
+        return text
 
     def _marked_text(self, row: Row) -> Any:
         return str.__new__(class_of(row[1], str), row[2])
@@ -239,6 +262,7 @@ MAKE: dict[str, Any] = {
     "m": Decoder._method,
     "p": Decoder._partial,
     "i": Decoder._iterator,
+    "I": Decoder._iterator_beside,
     "c": Decoder._count,
     "E": Decoder._exception,
     "g": Decoder._root,

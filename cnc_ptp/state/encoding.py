@@ -14,6 +14,7 @@ letter of its form:
     m object, name            bound method
     p function, args, names   partial: function, positional arguments, dict of the others
     i items                   iterator over what is left
+    I digest, taken           the same of a long list of values, which is kept beside the state: rows of its own
     c next, step              itertools.count
     E class, args, attributes exception
     g path                    what a root leads to (roots.py)
@@ -29,6 +30,7 @@ from __future__ import annotations
 import base64
 import enum
 import itertools
+import json
 import math
 from collections import OrderedDict, defaultdict, deque
 from collections.abc import Callable, Iterable
@@ -49,14 +51,27 @@ from cnc_ptp.state.roots import PACKAGE, Path, Roots, attributes, kernel_module
 Row = list[Any]
 LONG_TEXT = 500
 """Characters from which on a text is kept beside the state, once for all states of a run."""
+LONG_LIST = 100
+"""Items that are left from which on a list is kept beside the state, once for all states of a run."""
+LongLists = dict[int, tuple[Any, str | None]]
+"""By identity: the list itself and its digest, None where it is not kept beside."""
+OF_VALUES = frozenset("ltnegFxTdabf")
+"""Rows whose objects nobody changes, or only their owner."""
 AS_THEY_ARE = (type(None), bool, int, float, str)
 
 
 class Encoder:
     """Rows of one state; `texts` takes the long ones by their digest."""
 
-    def __init__(self, roots: Roots, texts: dict[str, str], interpreters: Iterable[RunningBlocks] = ()) -> None:
-        """`interpreters` that the graph leads to."""
+    def __init__(
+        self,
+        roots: Roots,
+        texts: dict[str, str],
+        interpreters: Iterable[RunningBlocks] = (),
+        lists: LongLists | None = None,
+    ) -> None:
+        """`interpreters` that the graph leads to; `lists` that were kept beside earlier states."""
+        self._lists: LongLists = {} if lists is None else lists
         self.rows: list[Row] = []
         self.shapes: list[list[Any]] = []
         self._roots, self._texts = roots, texts
@@ -104,7 +119,7 @@ class Encoder:
         return number
 
     def _text(self, text: str) -> Any:
-        digest = blake2b(text.encode(errors="surrogatepass"), digest_size=16).hexdigest()
+        digest = digest_of(text)
         self._texts[digest] = text
         number = self._number.get(id(text))
         if number is None:
@@ -201,8 +216,26 @@ class Encoder:
     def _iterator(self, found: Any, row: Row) -> None:
         """Of a list or tuple; what was taken from it is not needed any more."""
         state = found.__reduce__()
-        taken = state[2] if len(state) > 2 else 0
-        row += ["i", *self._values(list(state[1][0])[taken:])]
+        items, taken = state[1][0], state[2] if len(state) > 2 else 0
+        digest = self._beside(items) if len(items) - taken >= LONG_LIST else None
+        row += ["i", *self._values(items[taken:])] if digest is None else ["I", digest, taken]
+
+    def _beside(self, items: Any) -> str | None:
+        """The digest of a list that is kept beside the states; None where it holds more than values.
+
+        Nobody changes a list of blocks that is being executed, so it is encoded once.
+        """
+        known = self._lists.get(id(items))
+        if known is None:
+            encoder = Encoder(self._roots, self._texts)
+            value = encoder.encode(list(items))
+            digest = None
+            if all(row[0] in OF_VALUES for row in encoder.rows):
+                text = json.dumps([value, encoder.shapes, encoder.rows], separators=(",", ":"))
+                digest = digest_of(text)
+                self._texts[digest] = text
+            known = self._lists[id(items)] = items, digest
+        return known[1]
 
     def _count(self, found: Any, row: Row) -> None:
         arguments = found.__reduce__()[1]
@@ -271,6 +304,10 @@ def _form_of_class(cls: type) -> Form | None:
     if form is not None:
         FORMS[cls] = form
     return form
+
+
+def digest_of(text: str) -> str:
+    return blake2b(text.encode(errors="surrogatepass"), digest_size=16).hexdigest()
 
 
 def is_reachable(found: Any) -> bool:

@@ -25,7 +25,7 @@ from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import CycleBlock
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.state.decoding import Decoder
-from cnc_ptp.state.encoding import Encoder
+from cnc_ptp.state.encoding import Encoder, LongLists
 from cnc_ptp.state.faults import damaged, other_version
 from cnc_ptp.state.roots import Roots
 from cnc_ptp.state.rows import ROW, is_part
@@ -55,6 +55,7 @@ class StateStore:
     def __init__(self, machine: MachineParameters) -> None:
         self._roots = Roots({"machine": machine})
         self.texts: dict[str, str] = {}
+        self._lists: LongLists = {}
 
     def encode(self, machine: OfflineMachine, *, with_plc: bool = False) -> bytes:
         """All units but the PLC, whose commands a recording has. Raises CncError 26150.
@@ -64,7 +65,7 @@ class StateStore:
         runners, blocks = machine.parts
         if not with_plc:
             runners = {name: runner for name, runner in runners.items() if name != PLC}
-        encoder = Encoder(self._roots, self.texts, interpreters(runners))
+        encoder = Encoder(self._roots, self.texts, interpreters(runners), self._lists)
         root = encoder.encode([runners, blocks])
         text = json.dumps([machine.next_cycle, root, encoder.shapes, encoder.rows], separators=(",", ":"))
         rest = zstandard.compress(text.encode(), LEVEL)

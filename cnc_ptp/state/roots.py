@@ -5,6 +5,7 @@ from __future__ import annotations
 import enum
 import sys
 from collections.abc import Iterable, Iterator
+from functools import cache
 from importlib import import_module
 from types import BuiltinFunctionType, FunctionType, MappingProxyType, ModuleType
 from typing import Any
@@ -125,9 +126,14 @@ def attributes(found: Any) -> Iterator[tuple[str, Any]]:
     yield from getattr(found, "__dict__", {}).items()
 
 
+@cache
+def kernel_names() -> tuple[str, ...]:
+    return tuple(sources())
+
+
 def kernel_modules() -> Iterable[ModuleType]:
     """The modules of the kernel and of the parameters that are there."""
-    names = [*sources(), *sorted(name for name in sys.modules if name.startswith("cnc_ptp.parameters."))]
+    names = [*kernel_names(), *sorted(name for name in sys.modules if name.startswith("cnc_ptp.parameters."))]
     return (sys.modules[name] for name in names if name in sys.modules)
 
 

@@ -27,6 +27,7 @@ HEADS: Final[dict[str, tuple[Any, ...]]] = {
     "m": (VALUE, str),
     "p": (VALUE, VALUE, ROW),
     "i": (VALUES,),
+    "I": (str, int),
     "c": ((int, float), VALUES),
     "E": (str, VALUE, ROW),
     "g": (list,),
@@ -37,7 +38,7 @@ HEADS: Final[dict[str, tuple[Any, ...]]] = {
     "T": (str, str, ROW),
 }
 """The parts of a row by its letter."""
-PLAIN: Final = (type(None), bool, int, float, str)
+PLAIN: Final = frozenset((type(None), bool, int, float, str))
 
 
 def check_rows(rows: Any, shapes: Any) -> None:
@@ -71,17 +72,25 @@ def is_row(row: Any, count: int, lengths: list[int]) -> bool:
         return False
     fits = all(is_part(part, kind, count) for part, kind in zip(parts, fixed, strict=False))
     others = parts[len(fixed) :]
-    if not fits or not all(is_part(part, VALUE, count) for part in others) or (rest is PAIRS and len(others) % 2):
+    if not fits or not are_values(others, count) or (rest is PAIRS and len(others) % 2):
         return False
     if row[0] == "o":
         return 0 <= row[1] < len(lengths) and len(others) == lengths[row[1]]
     return row[0] != "R" or row[1] in AGAIN
 
 
+def are_values(parts: list[Any], count: int) -> bool:
+    for part in parts:
+        if type(part) is list:
+            if len(part) != 1 or type(part[0]) is not int or not 0 <= part[0] < count:
+                return False
+        elif type(part) not in PLAIN:
+            return False
+    return True
+
+
 def is_part(part: Any, kind: Any, count: int) -> bool:
     """Whether a part is of a kind of HEADS."""
     if kind in (VALUE, ROW):
-        if isinstance(part, list):
-            return len(part) == 1 and type(part[0]) is int and 0 <= part[0] < count
-        return kind is VALUE and isinstance(part, PLAIN)
+        return (kind is VALUE or isinstance(part, list)) and are_values([part], count)
     return isinstance(part, kind)

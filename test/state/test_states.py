@@ -16,6 +16,7 @@ from cnc_ptp.parameters.changed import changed_text
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import Command
 from cnc_ptp.state import decoding, machine_state
+from cnc_ptp.state.encoding import digest_of
 from cnc_ptp.state.machine_state import StateStore
 
 SPINDLES, FIGURES = "examples/spindles/", "examples/figures/"
@@ -207,15 +208,20 @@ def test_a_mistake_of_the_decoder_is_not_taken_for_a_damaged_state(monkeypatch: 
         store.restore(state)
 
 
-def test_a_program_that_has_another_course_now_is_refused() -> None:
-    """The text that belongs to the state is another one, with a fault where the program was."""
+def test_a_program_with_another_text_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By its digest; and were that the same, because the program is not what it was."""
     offline = OfflineMachine(MILL, build_units(MILL, scenario=entries(WAITING.ljust(600))))
     for _ in range(40):
         offline.tick()
     store = StateStore(MILL)
     state = store.encode(offline)
     assert len(store.texts) == 1
-    store.texts = dict.fromkeys(store.texts, "G01 X10 F100\nM30".ljust(600))
+    (digest,) = store.texts
+    store.texts[digest] = "G01 X10 F100\nM30".ljust(600)
+    assert refusal(store, state) == (
+        f"P-ERR-26151 checkpoint: the state is damaged: its text {digest} is another one; nothing was restored"
+    )
+    monkeypatch.setattr(decoding, "digest_of", lambda _text: digest)
     assert refusal(store, state).startswith(
         "P-ERR-26151 checkpoint: the state is damaged: the interpreter cannot be made again"
     )
@@ -236,6 +242,38 @@ def test_the_texts_of_the_refusals() -> None:
     assert refusal(store, state[:6] + bytes(16) + state[22:]) == (
         "P-ERR-26152 checkpoint: the state is that of a kernel with other sources; nothing was restored"
     )
+
+
+LONG = "\n".join(f"G01 X{place % 40} Y{place % 7} F3000" for place in range(2000)) + "\nM30"
+
+
+def test_blocks_of_a_long_program_are_kept_once_beside_the_states() -> None:
+    require_same_continuation(MILL, entries(LONG), seed="long", places=4, follow=40, seconds=6.0)
+    offline = OfflineMachine(MILL, build_units(MILL, scenario=entries(LONG)))
+    store, sizes, counts = StateStore(MILL), [], []
+    for _ in range(3):
+        for _ in range(50):
+            offline.tick()
+        sizes.append(len(store.encode(offline)))
+        counts.append(len(store.texts))
+    assert counts == [counts[0]] * 3 and max(sizes) < 60_000
+    state = store.encode(offline)
+    beside = next(digest for digest, text in store.texts.items() if text.startswith("[["))
+    for text, reason in WRONG_LISTS.items():
+        wrong = StateStore(MILL)
+        wrong.texts = {**store.texts, beside: text}
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(decoding, "digest_of", lambda found, text=text: beside if found == text else digest_of(found))
+            assert refusal(wrong, state) == (
+                f"P-ERR-26151 checkpoint: the state is damaged: {reason}; nothing was restored"
+            )
+
+
+WRONG_LISTS = {
+    "[": "a list: Expecting value: line 1 column 2 (char 1)",
+    "{}": "a list beside it has no form",
+    '[[0],[],[["t"]]]': "a list beside it is none",
+}
 
 
 def refusal(store: StateStore, state: bytes) -> str:

@@ -49,6 +49,8 @@ def print_difference(found: RunDifference) -> None:
         return
     console.print(f"the runs part at {found.parts_at:g} s")
     table = Table("unit", "column", "largest", "now", "differ by", "at s", "part at s", box=SIMPLE_HEAD, pad_edge=False)
+    for column in table.columns:
+        column.no_wrap = True
     for row in parted:
         numbers = [f"{value:.6g}" for value in (row.first, row.second, row.difference)]
         table.add_row(row.unit, row.column.replace("_", " "), *numbers, f"{row.at:.3f}", f"{row.parts_at:.3f}")
