@@ -28,6 +28,7 @@ TOPICS = (
     "streaming",
     "recording",
     "columns",
+    "what_if",
     "offline",
     "graph",
     "service",

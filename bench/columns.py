@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 from mcap.records import Channel
@@ -18,6 +18,8 @@ from cnc_ptp.recording.writer import Recording
 HOUR = 3600
 AXES = tuple("xyzabcuv")
 SECOND_NS = 1_000_000_000
+Write = Callable[[McapFile], None]
+NOTHING: Mapping[int, Write] = {}
 
 
 def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
@@ -54,8 +56,8 @@ def one_second(path: Path) -> Path:
     return path
 
 
-def repeat_second(second: Path, path: Path, seconds: int) -> None:
-    """The chunks of a file of one second, written for each of many seconds."""
+def repeat_second(second: Path, path: Path, seconds: int, before: Mapping[int, Write] = NOTHING) -> None:
+    """The chunks of a file of one second, written for each of many seconds; `before` some of them something else."""
     source = McapIndex(second)
     groups = [[(run, run.head["log_time"].copy()) for run in source.runs(c, [*source.channels])] for c in source.chunks]
     with McapFile(path) as file:
@@ -63,6 +65,8 @@ def repeat_second(second: Path, path: Path, seconds: int) -> None:
             announce(file, source, channel)
         for index in range(seconds):
             file.finish_chunks()
+            if index in before:
+                before[index](file)
             for runs in groups:
                 for run, times in runs:
                     file.messages(run.channel_id, run.rows.copy(), times + index * SECOND_NS)

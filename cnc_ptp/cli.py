@@ -19,7 +19,7 @@ from cnc_ptp.commands.completion import (
 )
 from cnc_ptp.commands.console import print_error
 from cnc_ptp.errors import WRONG_INPUT, CncError
-from cnc_ptp.number_range import DURATION, POSITIVE, RATE, STATES_PER_SECOND
+from cnc_ptp.number_range import DURATION, PERCENT, POSITIVE, RATE, STATES_PER_SECOND
 from cnc_ptp.ros_arguments import client_namespace_option, namespace_option, ros_arguments
 from cnc_ptp.ros_arguments import split as split_ros_arguments
 from cnc_ptp.start_options import start_options, take_start
@@ -99,6 +99,13 @@ def main(context: click.Context) -> None:
 
 @main.command("simulate")
 @run_options
+@click.option(
+    "--checkpoints",
+    type=click.FloatRange(min=0.0),
+    default=10.0,
+    show_default=True,
+    help="Machine time in s between two checkpoints in the recording, from which a replay can begin; 0: none.",
+)
 def simulate_command(**options: Any) -> None:
     """Run a machine offline, as fast as possible."""
     from cnc_ptp.commands.run.simulate import simulate
@@ -314,11 +321,29 @@ def check_command(**options: Any) -> None:
 @click.option("--publish", is_flag=True, help="Publish the recorded topics again.")
 @click.option("--rate", type=RATE, default=1.0, show_default=True, help="Factor for --publish, 1 = real time.")
 @click.option("--inputs", is_flag=True, help="Publish PLC inputs too: a machine on this ROS domain acts on them.")
+@click.option("--from", "begin", type=DURATION, help="What if: changes count from this time on, s.")
+@click.option("--to", "end", type=DURATION, help="What if: to this time, s.")
+@click.option("--set", "parameters", multiple=True, metavar="UNIT.NAME=VALUE", help="What if: another parameter.")
+@click.option("--override", type=PERCENT, help="What if: override of the channels, percent.")
+@click.option("--program", type=click.Path(dir_okay=False), help="What if: in place of the loaded program.")
+@click.option("--commands", type=click.Path(dir_okay=False), help="What if: further commands, as a scenario.")
+@click.option("--output", "-o", type=click.Path(dir_okay=False), help="What if: record the changed run.")
+@click.option("--diff", is_flag=True, help="What if: print the difference (always without --output).")
+@click.option("--diff-page", "page", type=click.Path(dir_okay=False), help="What if: a page of both runs (.html).")
 @namespace_option
 def replay_command(**options: Any) -> None:
-    """Compute a recorded run again, or publish the recording."""
+    """Compute a recorded run again, also with something changed, or publish the recording."""
     from cnc_ptp.commands.run.replay import replay
 
+    names = ("begin", "end", "parameters", "override", "program", "commands", "output", "diff", "page")
+    changes = {name: options.pop(name) for name in names}
+    if any(value not in (None, (), False) for value in changes.values()):
+        if options["verify"] or options["publish"]:
+            raise click.UsageError("--verify and --publish do not go with a changed run; nothing was replayed")
+        from cnc_ptp.commands.run.what_if import what_if
+
+        changes["begin"] = changes["begin"] or 0.0
+        sys.exit(what_if(options["recording"], **changes))
     if not options["publish"]:
         ros_arguments().require_none("cnc_ptp replay without --publish")
         if options["inputs"] or options["rate"] != 1.0:
@@ -345,6 +370,17 @@ def part_options(function: Callable[..., Any]) -> Callable[..., Any]:
     ):
         function = option(function)
     return function
+
+
+@main.command("diff")
+@click.argument("first", type=click.Path(dir_okay=False))
+@click.argument("second", type=click.Path(dir_okay=False))
+@click.option("--output", "-o", type=click.Path(dir_okay=False), help="Page of both runs on top of each other (.html).")
+def diff_command(**options: Any) -> None:
+    """Compare two recorded runs of a machine: where they part, largest values, program times."""
+    from cnc_ptp.commands.look.diff import diff
+
+    sys.exit(diff(**options))
 
 
 @main.command("report")

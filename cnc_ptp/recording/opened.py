@@ -144,6 +144,13 @@ class OpenRecording:
         self._require_pieces(topic, start, end)
         return (part for part in self._parts(topic, names, start, end) if len(part[names[0]]))
 
+    def attached(self, name: str) -> str:
+        """The text of an attachment, `machine.yaml`. Raises CncError 26011 where there is none of this name."""
+        for file in self._files:
+            if name in file.attachments:
+                return file.attached(name).decode(errors="replace")
+        raise self._missing(f"holds no attachment '{name}'")
+
     def close(self) -> None:
         self._workers.shutdown()
         for file in self._files:

@@ -19,7 +19,7 @@ from cnc_ptp.protocol.event_values import read_event_values
 from cnc_ptp.recording.bag import QOS
 from cnc_ptp.recording.mcap_chunks import McapRecords, MessageRun, RawRecord
 from cnc_ptp.recording.mcap_file import METADATA, MISSING
-from cnc_ptp.recording.writer import MACHINE_FILE
+from cnc_ptp.recording.writer import CHECKPOINT, CHECKPOINT_TEXT, MACHINE_FILE
 from cnc_ptp.wire.layout import Layout, Records, fixed_layout
 from cnc_ptp.wire.schemas import full_name, parse_schema
 
@@ -235,11 +235,15 @@ class _Reader:
                     self.names.add(item)
         elif record.opcode == Opcode.ATTACHMENT:
             attachment = self.records.attachment(record)
-            self.recorded.attachments[attachment.name] = attachment.data.decode(errors="replace")
+            self._attachment(attachment.name, attachment.data)
         elif record.opcode == Opcode.METADATA:
             metadata = self.records.parse(Metadata.read, record)
             if metadata.name == METADATA:
                 self.recorded.metadata.update(metadata.metadata)
+
+    def _attachment(self, name: str, data: bytes) -> None:
+        if not name.startswith((CHECKPOINT, CHECKPOINT_TEXT)):  # of no use but for a replay: run_inputs.py
+            self.recorded.attachments[name] = data.decode(errors="replace")
 
     def finish(self) -> Recorded:
         recorded = self.recorded
@@ -306,21 +310,7 @@ class _Reader:
         )
 
     def _command(self, _time: int, _topic: str, message: Any) -> None:
-        self.recorded.commands.append(
-            CommandRecord(
-                message.cycle,
-                message.target,
-                message.command,
-                message.arguments_json,
-                message.accepted,
-                message.error_id,
-                message.message,
-                getattr(message, "id", 0),
-                read_values(getattr(message, "values_json", "")),
-                getattr(message, "job", 0),
-                getattr(message, "warning_id", 0),
-            )
-        )
+        self.recorded.commands.append(command_record(message))
 
     def _diagnostics(self, time: int, _topic: str, message: Any) -> None:
         for status in message.status:
@@ -336,3 +326,20 @@ def coordinates(channel: str, offsets: Any) -> Coordinates:
     """Of ChannelOffsets; those of older recordings have no origin."""
     origin = tuple(getattr(offsets, "origin", ()))
     return Coordinates(offsets.cycle, channel, tuple(offsets.axes), tuple(offsets.systems), origin)
+
+
+def command_record(message: Any) -> CommandRecord:
+    """Of a CommandRecord message; those of older recordings have fewer fields."""
+    return CommandRecord(
+        message.cycle,
+        message.target,
+        message.command,
+        message.arguments_json,
+        message.accepted,
+        message.error_id,
+        message.message,
+        getattr(message, "id", 0),
+        read_values(getattr(message, "values_json", "")),
+        getattr(message, "job", 0),
+        getattr(message, "warning_id", 0),
+    )

@@ -31,6 +31,12 @@ TWO_TYPES = 26008
 CLOSED = 26009
 ROOM = bytes(HEAD_SIZE)  # for the record head in front of each message
 MACHINE_FILE = "machine.yaml"
+PLC_FILE = "plc/"
+"""Attachment with the PLC in a file that served the run; its name ends with that of the file."""
+CHECKPOINT = "checkpoint/"
+"""Attachments with states of the units: their names end with the first cycle behind it."""
+CHECKPOINT_TEXT = "checkpoint_text/"
+"""Attachments with long texts of the states: their names end with the digest."""
 NO_NOTES: Mapping[str, str] = {}
 BEFORE_ALL = -1  # end of the chunk before the first block
 
@@ -213,6 +219,11 @@ class Recording:
         """A file of the run, e.g. the NC program."""
         self._require_open(name)
         self._file.attachment(name, media_type, text.encode(), self.stamps.start_ns)
+
+    def checkpoint(self, cycle: int, state: bytes) -> None:
+        """The state of the units before `cycle`."""
+        self._require_open("a checkpoint")
+        self._file.attachment(f"{CHECKPOINT}{cycle}", "application/octet-stream", state, self.stamps.at(cycle))
 
     # writing
 

@@ -6,6 +6,7 @@ import gc
 import time
 from collections import defaultdict
 from dataclasses import dataclass, field
+from pathlib import Path
 from types import FrameType
 
 from rich.console import Console
@@ -33,6 +34,7 @@ from cnc_ptp.plc.program.plc_program import PlcFile
 from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, PlcBlock, Severity
 from cnc_ptp.protocol.notes import Note, Notes, error_text
 from cnc_ptp.protocol.unit import PLC
+from cnc_ptp.recording.checkpoints import CHECKPOINT_SECONDS
 from cnc_ptp.recording.offline_run import OfflineRun
 from cnc_ptp.recording.overwriting import check_recording
 from cnc_ptp.recording.trigger import Condition
@@ -83,6 +85,7 @@ def simulate(
     begin: StartPoint | None = None,
     plc: str | None = None,
     record_when: str | None = None,
+    checkpoints: float = CHECKPOINT_SECONDS,
 ) -> int:
     """Runs offline; prints a summary. Status 1 when a unit ended in error, with `strict` also for a refused command."""
     check_recording(record, machine_file=machine, NC_program=program, scenario=scenario, PLC_file=plc)
@@ -92,7 +95,12 @@ def simulate(
     condition = None if record_when is None else Condition(record_when, unit_kinds(parameters))
     file = None if plc is None else read_plc(plc)
     units = build_units(parameters, scenario=job, end_when_idle=duration is None, plc_file=file)
-    run = OfflineRun(parameters, units, record=record, machine_text=machine_text(machine), condition=condition)
+    text = machine_text(machine)
+    run = OfflineRun(
+        parameters, units, record=record, machine_text=text, condition=condition, checkpoint_seconds=checkpoints
+    )
+    if plc is not None:
+        run.attach_plc(Path(plc).name, Path(plc).read_text(encoding="utf-8"))
     cycles = None if duration is None else round(duration * 1e6 / parameters.cycle_time_us)
     result = Result()
     gc.freeze()  # what was loaded stays to the end: nothing to be searched for garbage
@@ -114,6 +122,7 @@ def simulate(
     print_summary(parameters, result, time.monotonic() - started, duration)
     print_note_of_idle_run(program, scenario, plc, duration)
     print_note_of_trigger(run)
+    print_note_of_checkpoints(run)
     return RUN_FAILED if result.failed or run.failure or result.interrupted or (strict and result.refused) else 0
 
 
@@ -148,6 +157,12 @@ def print_note_of_trigger(run: OfflineRun) -> None:
     if run.waits_for_trigger:
         text = "note: the condition of --record-when was never true; commands and events alone are recorded"
         Console(highlight=False, soft_wrap=True).print(text, style="yellow")
+
+
+def print_note_of_checkpoints(run: OfflineRun) -> None:
+    """Why a replay from the end of the recording computes more than it would have to."""
+    if run.checkpoint_fault:
+        Console(highlight=False, soft_wrap=True).print(f"note: {run.checkpoint_fault}", style="yellow", markup=False)
 
 
 def print_summary(
