@@ -13,7 +13,8 @@ from cnc_ptp.protocol.blocks import CycleTick
 from cnc_ptp.protocol.unit import PLC, Unit
 from cnc_ptp.recording.mcap_file import NOT_WRITTEN
 from cnc_ptp.recording.trigger import Condition, TriggeredRecording, make_recording
-from cnc_ptp.recording.writer import Recording
+from cnc_ptp.recording.settings import Settings
+from cnc_ptp.recording.writer import AS_USUAL, Recording
 
 
 class OfflineRun:
@@ -33,6 +34,7 @@ class OfflineRun:
         record: str | None = None,
         machine_text: str = "",
         condition: Condition | None = None,
+        settings: Settings = AS_USUAL,
     ) -> None:
         """`units` in the order of computation; `machine_text` is kept in the recording `record`.
 
@@ -42,7 +44,7 @@ class OfflineRun:
         cycle_time_ns = parameters.cycle_time_us * 1000
         self._recording: Recording | None = None
         if record is not None:
-            self._recording = make_recording(record, machine_text, 0, cycle_time_ns, condition)
+            self._recording = make_recording(record, machine_text, 0, cycle_time_ns, condition, settings)
 
     def step(self) -> Outputs:
         """The next block of all units."""

@@ -15,7 +15,7 @@ from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, CycleTick, SpindleB
 from cnc_ptp.recording.blocks import StateBlock, kind_of
 from cnc_ptp.recording.origin import RECORD_WHEN, origin
 from cnc_ptp.recording.settings import Settings
-from cnc_ptp.recording.writer import AS_USUAL, Recording
+from cnc_ptp.recording.writer import AS_USUAL, NO_NOTES, Recording
 from cnc_ptp.wire.block_codec import codec_of, head_of
 from cnc_ptp.wire.layout import Layout
 
@@ -77,10 +77,16 @@ class TriggeredRecording(Recording):
     """
 
     def __init__(
-        self, path: str | Path, machine_yaml: str, *times: int, condition: Condition, settings: Settings = AS_USUAL
+        self,
+        path: str | Path,
+        machine_yaml: str,
+        *times: int,
+        condition: Condition,
+        notes: Mapping[str, str] = NO_NOTES,
+        settings: Settings = AS_USUAL,
     ) -> None:
         """`times`: start and cycle time in ns."""
-        notes = {RECORD_WHEN: condition.text, **origin()}
+        notes = {RECORD_WHEN: condition.text, **notes}
         super().__init__(path, machine_yaml, *times, notes=notes, settings=settings)
         self._condition = condition
         self.begin: int | None = None
@@ -122,8 +128,13 @@ def make_recording(
     cycle_time_ns: int,
     condition: Condition | None,
     settings: Settings = AS_USUAL,
+    *,
+    notes: Mapping[str, str] = NO_NOTES,
 ) -> Recording:
-    """A recording of the whole run, or one that begins with a condition."""
+    """A recording of the whole run, or one that begins with a condition; `notes` for its metadata."""
+    notes = {**origin(), **notes}
     if condition is None:
-        return Recording(path, machine_yaml, start_ns, cycle_time_ns, notes=origin(), settings=settings)
-    return TriggeredRecording(path, machine_yaml, start_ns, cycle_time_ns, condition=condition, settings=settings)
+        return Recording(path, machine_yaml, start_ns, cycle_time_ns, notes=notes, settings=settings)
+    return TriggeredRecording(
+        path, machine_yaml, start_ns, cycle_time_ns, condition=condition, notes=notes, settings=settings
+    )

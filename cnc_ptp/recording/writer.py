@@ -370,18 +370,6 @@ class Recording:
                 self._file.messages(topic.channel_id, rows, times)
 
 
-class NoRecording:
-    """Takes what a recording takes, and keeps nothing: after a disk was full the run continues."""
-
-    def __init__(self, stamps: Stamps) -> None:
-        self.stamps = stamps
-
-    def take(self, *_arguments: Any, **_options: Any) -> None:
-        """See Recording."""
-
-    block = encoded_block = tick = event = command = raw = attachment = flush_if_due = flush = close = take
-
-
 def offer(type_name: str) -> dict[str, str]:
     """Metadata of a topic's channel: quality of service, hash of the type."""
     return {QOS: profiles_text(offered(full_name(type_name))), TYPE_HASH: type_hash(type_name)}

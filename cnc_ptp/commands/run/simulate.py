@@ -35,6 +35,7 @@ from cnc_ptp.protocol.notes import Note, Notes, error_text
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.recording.offline_run import OfflineRun
 from cnc_ptp.recording.overwriting import check_recording
+from cnc_ptp.recording.recorder_options import FROM_THE_START, RecorderOptions
 from cnc_ptp.recording.trigger import Condition
 
 LONG_CYCLE = 1.0
@@ -82,17 +83,19 @@ def simulate(
     dialect: str | None = None,
     begin: StartPoint | None = None,
     plc: str | None = None,
-    record_when: str | None = None,
+    recorder: RecorderOptions = FROM_THE_START,
 ) -> int:
     """Runs offline; prints a summary. Status 1 when a unit ended in error, with `strict` also for a refused command."""
     check_recording(record, machine_file=machine, NC_program=program, scenario=scenario, PLC_file=plc)
     parameters = read_machine(machine)
     print_missing_folders(parameters)
     job = read_entries(parameters, program=program, scenario=scenario, dialect=dialect, begin=begin)
-    condition = None if record_when is None else Condition(record_when, unit_kinds(parameters))
+    condition = None if recorder.when is None else Condition(recorder.when, unit_kinds(parameters))
+    settings = recorder.settings()
     file = None if plc is None else read_plc(plc)
     units = build_units(parameters, scenario=job, end_when_idle=duration is None, plc_file=file)
-    run = OfflineRun(parameters, units, record=record, machine_text=machine_text(machine), condition=condition)
+    text = machine_text(machine)
+    run = OfflineRun(parameters, units, record=record, machine_text=text, condition=condition, settings=settings)
     cycles = None if duration is None else round(duration * 1e6 / parameters.cycle_time_us)
     result = Result()
     gc.freeze()  # what was loaded stays to the end: nothing to be searched for garbage
