@@ -30,6 +30,9 @@ NOT_RECORDING = 26191
 NOTHING_KEPT = 26193
 SNAPSHOT_TAKEN = 26194
 SNAPSHOT_FAILED = 26195
+BAD_SECONDS = 26197
+LONGEST = 86400.0
+"""Seconds that may be asked for."""
 NOT_CHANGED = "nothing was changed"
 SETTLE = 0.2
 """Seconds after the last block in which commands and events of its cycles may still come."""
@@ -37,6 +40,8 @@ PATIENCE = 2.0
 """Seconds for the blocks of a unit that may be lost."""
 AFTER = 0.5
 """Seconds of the machine behind an error or a trigger that its snapshot has."""
+MARGIN = 1.0
+"""Seconds that are kept beyond those that may be asked for, because a snapshot waits for its last block."""
 MOST_SNAPSHOTS = 100
 """That a run takes by itself."""
 
@@ -104,7 +109,7 @@ class OnDemand:
         self._tick_end = self._tick_begin = first_cycle
         self._history = History()
         keeps = snapshots.keep > 0.0
-        self._kept = LastSeconds(self._cycles(snapshots.keep)) if keeps else None
+        self._kept = LastSeconds(self._cycles(snapshots.keep + MARGIN)) if keeps else None
         self._jobs: list[Job] = []
         self._writing: list[tuple[Future[Answer], Done]] = []
         self._writer = ThreadPoolExecutor(max_workers=1, thread_name_prefix="snapshot")
@@ -201,8 +206,12 @@ class OnDemand:
         self._jobs.append(Job(self._newest, self._close_current, done))
 
     def snapshot(self, file: str, seconds: float, done: Done) -> None:
-        """Writes the last `seconds`, 0: all that is kept. Raises CncError 26113, 26192, 26193."""
+        """Writes the last `seconds`, 0 or NaN: all that is kept. Raises CncError 26113, 26192, 26193, 26197."""
         refused = f"{RECORDER}: snapshot refused"
+        seconds = 0.0 if math.isnan(seconds) else seconds
+        if not 0.0 <= seconds <= LONGEST:
+            reason = f"seconds = {seconds:g} is not within 0 ... {LONGEST:g} s"
+            raise CncError(BAD_SECONDS, reason, NOT_CHANGED, where=refused, seconds=seconds, high=LONGEST)
         if self._kept is None:
             reason = "nothing is kept in memory; `cnc_ptp run` keeps the last seconds with --keep"
             raise CncError(NOTHING_KEPT, reason, NOT_CHANGED, where=refused)
@@ -232,7 +241,7 @@ class OnDemand:
         self._taken_by_itself += 1
         self._covered = cycle + self._cycles(AFTER)
         file = free_name(folder, f"{why}_{cycle}")
-        self._ask_for_snapshot(str(file), 0.0, self._covered, lambda answer: self._tell(file, answer))
+        self._ask_for_snapshot(str(file), self._snapshots.keep + AFTER, self._covered, lambda answer: self._tell(file, answer))
 
     def _tell(self, file: Path, answer: Answer) -> None:
         if answer.error is None:
@@ -285,11 +294,11 @@ class OnDemand:
         """In a thread of its own: in one process with all other nodes nothing may wait for it."""
         assert self._kept is not None
         whole = self._kept.first_whole(self._next) or 0
-        wanted = self._kept.begin_of_block(end - self._cycles(seconds)) if seconds else whole
+        wanted = self._kept.begin_of_block(end - self._cycles(seconds or self._snapshots.keep))
         begin = max(wanted, whole)
         items, records = self._kept.between(begin, end), self._history.before(end)
         warning = ""
-        if wanted < whole:
+        if seconds and wanted < whole:
             kept = (end - begin) * self.stamps.cycle_time_ns * 1e-9
             warning = f"{RECORDER}: {kept:g} s were kept and are in the snapshot, {seconds:g} s were asked for"
         return self._writer.submit(self._write_items, file, begin, end, items, records, warning)
