@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import platform
 import subprocess
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
@@ -14,6 +14,7 @@ from cnc_ptp import KERNEL
 from cnc_ptp.errors import CncError
 
 FROM_THE_FUTURE = 26016
+FOREIGN = 26017
 NOT_COMPUTABLE = 26018
 FORMAT = "format"
 """Key of the metadata: version of what a recording holds."""
@@ -62,6 +63,16 @@ def require_known_format(path: Path, metadata: Mapping[str, str]) -> None:
             f"recording {path}: has format {found}{f' of cnc_ptp {by}' if by else ''}, this version reads up to "
             f"format {FORMAT_VERSION}",
             "nothing was read, use a newer version of cnc_ptp",
+        )
+
+
+def require_own(path: Path, metadata: Mapping[str, str], states: Collection[str]) -> None:
+    """Raises CncError 26017 for an MCAP file of another program: neither our metadata nor `states` of ours."""
+    if not metadata and not states:
+        raise CncError(
+            FOREIGN,
+            f"recording {path}: is not of cnc_ptp",
+            "nothing was drawn; `cnc_ptp export` reads its topics",
         )
 
 
