@@ -28,6 +28,7 @@ TOPICS = (
     "streaming",
     "recording",
     "columns",
+    "recorder",
     "offline",
     "graph",
     "service",
