@@ -113,7 +113,6 @@ def main(context: click.Context) -> None:
 def simulate_command(**options: Any) -> None:
     """Run a machine offline, as fast as possible."""
     from cnc_ptp.commands.run.simulate import simulate
-
     from cnc_ptp.recording.recorder_options import FROM_THE_START
 
     recorder = take_recorder(options) or FROM_THE_START
@@ -125,11 +124,14 @@ def simulate_command(**options: Any) -> None:
 @click.option("--free-run", is_flag=True, help="As fast as all nodes follow, instead of in real time.")
 @click.option("--composed", is_flag=True, help="All nodes in one process.")
 @namespace_option
-@click.option("--recorder", "on_demand", is_flag=True, help="A recorder that records on demand: do recorder start FILE.")
+@click.option(
+    "--recorder", "on_demand", is_flag=True, help="A recorder that records on demand: do recorder start FILE."
+)
 @click.option("--keep", type=POSITIVE, help="Keep the last seconds in memory: do recorder snapshot FILE.")
 @click.option("--snapshots", type=click.Path(file_okay=False), help="Folder for a snapshot at each error; with --keep.")
 @click.option(
-    "--snapshot-when", help="A snapshot also when a field comes to a value: 'x.following_error > 0.1'; with --snapshots."
+    "--snapshot-when",
+    help="A snapshot also when a field comes to a value: 'x.following_error > 0.1'; with --snapshots.",
 )
 @click.option("--stay", is_flag=True, help="Continue when everything is at a standstill, for commands, until Ctrl-C.")
 @click.option(

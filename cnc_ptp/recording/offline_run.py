@@ -12,8 +12,8 @@ from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import CycleTick
 from cnc_ptp.protocol.unit import PLC, Unit
 from cnc_ptp.recording.mcap_file import NOT_WRITTEN
-from cnc_ptp.recording.trigger import Condition, TriggeredRecording, make_recording
 from cnc_ptp.recording.settings import Settings
+from cnc_ptp.recording.trigger import Condition, TriggeredRecording, make_recording
 from cnc_ptp.recording.writer import AS_USUAL, Recording
 
 

@@ -241,7 +241,9 @@ class OnDemand:
         self._taken_by_itself += 1
         self._covered = cycle + self._cycles(AFTER)
         file = free_name(folder, f"{why}_{cycle}")
-        self._ask_for_snapshot(str(file), self._snapshots.keep + AFTER, self._covered, lambda answer: self._tell(file, answer))
+        self._ask_for_snapshot(
+            str(file), self._snapshots.keep + AFTER, self._covered, lambda answer: self._tell(file, answer)
+        )
 
     def _tell(self, file: Path, answer: Answer) -> None:
         if answer.error is None:
@@ -348,5 +350,3 @@ def free_name(folder: Path, stem: str) -> Path:
         number += 1
         file = folder / f"{stem}_{number}.mcap"
     return file
-
-

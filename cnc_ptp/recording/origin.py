@@ -1,4 +1,4 @@
-"""What a recording says of itself in its metadata: where it comes from, its format, whether it can be computed again."""
+"""What a recording says of itself in its metadata: its origin, its format, whether it can be computed again."""
 
 from __future__ import annotations
 

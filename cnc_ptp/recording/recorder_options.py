@@ -66,7 +66,9 @@ class RecorderOptions:
         folder = None if self.snapshots is None else Path(self.snapshots)
         if folder is not None:
             folder.mkdir(exist_ok=True)
-        return Snapshots(self.keep, folder, None if self.snapshot_when is None else Condition(self.snapshot_when, kinds))
+        return Snapshots(
+            self.keep, folder, None if self.snapshot_when is None else Condition(self.snapshot_when, kinds)
+        )
 
 
 FROM_THE_START = RecorderOptions()

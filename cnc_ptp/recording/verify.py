@@ -17,8 +17,8 @@ import numpy.typing as npt
 from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import ChannelBlock, CycleBlock, PlcBlock
 from cnc_ptp.recording.blocks import Cycles, StateBlock, StateKind, block_rows, fill_states, kind_of, thread_kind
-from cnc_ptp.recording.reader import Recorded
 from cnc_ptp.recording.origin import RECORD_WHEN, require_computable
+from cnc_ptp.recording.reader import Recorded
 from cnc_ptp.recording.writer import topic_of
 from cnc_ptp.wire.block_codec import codec_of
 from cnc_ptp.wire.layout import Layout, Records

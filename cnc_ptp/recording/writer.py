@@ -160,7 +160,7 @@ class Recording:
         notes: Mapping[str, str] = NO_NOTES,
         settings: Settings = AS_USUAL,
     ) -> None:
-        """`notes` for its metadata. With a split in its `settings`, `path` is a folder, and parts are written (parts)."""
+        """`notes` for its metadata. With a split in its `settings`, `path` is a folder of parts (PartsFolder)."""
         self.path = Path(path)
         self.stamps = Stamps(start_ns, cycle_time_ns)
         self._chunk_cycles = max(1, round(chunk_seconds * 1e9 / cycle_time_ns))

@@ -69,9 +69,7 @@ def test_recordings_of_a_running_graph_can_be_computed_again(tmp_path, asker, op
             asker.wait(0.05)
         again = asker.ask("start", file=late)
         assert (again.accepted, again.error_id) == (False, 26190)
-        assert again.message == (
-            f"recorder: start refused: recording {first} is being written; nothing was changed"
-        )
+        assert again.message == (f"recorder: start refused: recording {first} is being written; nothing was changed")
         asker.wait(2.5)
         stopped = asker.ask("stop")
         assert stopped.accepted and full_blocks(first) == (started.cycle, stopped.cycle - 1)
@@ -95,7 +93,9 @@ def test_commands_of_the_command_line(tmp_path):
         graph.wait_for_nodes(5)
         files = [tmp_path / f"{name}.mcap" for name in "ab"]
         assert f"recorder: start: {files[0]} begins with cycle " in run("do", "recorder", "start", files[0]).stdout
-        assert run("do", "recorder", "start", files[1], expect=1).stderr.startswith("P-ERR-26190 recorder: start refused: ")
+        assert run("do", "recorder", "start", files[1], expect=1).stderr.startswith(
+            "P-ERR-26190 recorder: start refused: "
+        )
         assert "recorder: stop: the recording ends before cycle " in run("do", "recorder", "stop").stdout
         output = run("do", "recorder", "snapshot", files[1], "seconds=60").stdout
         assert f"recorder: snapshot: {files[1]} begins with cycle " in output

@@ -12,8 +12,8 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.parameters import machine_text
 from cnc_ptp.protocol.blocks import CommandRecord, CycleTick, Event, Severity
-from cnc_ptp.recording.memory import OBJECT, History, LastSeconds
 from cnc_ptp.recording.mcap_file import NOT_WRITTEN
+from cnc_ptp.recording.memory import OBJECT, History, LastSeconds
 from cnc_ptp.recording.on_demand import OnDemand, Snapshots
 from cnc_ptp.recording.origin import RECORD_WHEN, WITHOUT
 from cnc_ptp.recording.reader import read_recording
@@ -110,7 +110,12 @@ def test_a_recording_begins_and_ends_while_the_machine_moves(tmp_path):
     recorded, first, last = computed_again(tmp_path / "a.mcap")
     assert (first, last) == (500, 1699)
     assert recorded.metadata[RECORD_WHEN] == "asked for, from cycle 500 on"
-    assert [record.command for record in recorded.commands] == ["reset", "move_absolute", "set_override", "move_absolute"]
+    assert [record.command for record in recorded.commands] == [
+        "reset",
+        "move_absolute",
+        "set_override",
+        "move_absolute",
+    ]
     with Reader(tmp_path / "a.mcap") as bag:
         assert {each.topic: each.msgcount for each in bag.connections}["/x/state"] == 1200
     assert story.recorder.start(str(tmp_path / "b.mcap")).cycle == 2100
@@ -227,7 +232,9 @@ def test_files_that_cannot_be_written_are_refused(tmp_path, what):
         f"P-ERR-26113 {refused}: recording {missing} cannot be written: No such file or directory; nothing was changed"
     )
     read_only = "/proc/self/a.mcap"  # root may write into any folder but this
-    assert story.refused(call, read_only).startswith(f"P-ERR-26113 {refused}: recording {read_only} cannot be written: ")
+    assert story.refused(call, read_only).startswith(
+        f"P-ERR-26113 {refused}: recording {read_only} cannot be written: "
+    )
     assert story.refused(call, "") == (
         f"P-ERR-26113 {refused}: recording  cannot be written: Is a directory; nothing was changed"
     )

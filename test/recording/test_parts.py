@@ -45,7 +45,9 @@ def run(path, settings, seconds=3.5):
 
 
 def states_of(path):
-    return {topic: rows[np.argsort(rows["cycle"], kind="stable")] for topic, rows in read_recording(path).states.items()}
+    return {
+        topic: rows[np.argsort(rows["cycle"], kind="stable")] for topic, rows in read_recording(path).states.items()
+    }
 
 
 def equal(one, other):
@@ -282,7 +284,9 @@ def test_a_recording_from_the_future_is_refused_by_every_command(tmp_path):
         result = CliRunner().invoke(main, [name, str(path), *words])
         assert (result.exit_code, " ".join(result.stderr.split())) == (2, text), name
     other = from_the_future(tmp_path / "other.mcap", format="b")
-    assert refusal(read_recording, other).startswith(f"P-ERR-26016 recording {other}: has format b, this version reads up")
+    assert refusal(read_recording, other).startswith(
+        f"P-ERR-26016 recording {other}: has format b, this version reads up"
+    )
 
 
 def test_recordings_without_a_format_are_the_oldest(tmp_path):
@@ -306,10 +310,16 @@ def test_mcap_files_of_other_programs(tmp_path):
     answers = {
         ("report", "-o", "page.html"): f"P-ERR-26017 recording {path}: is not of cnc_ptp; nothing was drawn; "
         "`cnc_ptp export` reads its topics",
-        ("replay",): f"P-ERR-26004 recording {path}: holds no attachment machine.yaml; it cannot be verified, record it "
+        (
+            "replay",
+        ): f"P-ERR-26004 recording {path}: holds no attachment machine.yaml; it cannot be verified, record it "
         "with cnc_ptp",
-        ("plot", "x/set_velocity", "-o", "a.svg"): f"P-ERR-26011 recording {path}: holds no unit 'x' with states; there "
-        "are none; nothing was drawn",
+        (
+            "plot",
+            "x/set_velocity",
+            "-o",
+            "a.svg",
+        ): f"P-ERR-26011 recording {path}: holds no unit 'x' with states; there are none; nothing was drawn",
     }
     for (name, *words), text in answers.items():
         result = CliRunner().invoke(main, [name, str(path), *words])

@@ -11,7 +11,15 @@ import yaml
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.plc.scenario import SWITCH_WORDS, read_value
-from cnc_ptp.protocol.commands import BAD_ARGUMENT, COMMANDS, Argument, Arguments, check_arguments, check_sendable, current_names
+from cnc_ptp.protocol.commands import (
+    BAD_ARGUMENT,
+    COMMANDS,
+    Argument,
+    Arguments,
+    check_arguments,
+    check_sendable,
+    current_names,
+)
 
 SWITCHES = SWITCH_WORDS | {"true": True, "false": False}
 PATHS = ("file", "program")

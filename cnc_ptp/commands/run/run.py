@@ -40,7 +40,8 @@ def run(
 ) -> int:
     """Runs the graph; prints a summary. Status 1 when a unit ended in error, a node died or the disk was full.
 
-    `recorder`: None = without one. `stay`: until Ctrl-C, which is no error when everything is at a standstill. `strict`: status 1 also when a
+    `recorder`: None = without one.
+    `stay`: until Ctrl-C, which is no error when everything is at a standstill. `strict`: status 1 also when a
     command was refused.
     """
     check_recording(record, machine_file=machine, NC_program=program, scenario=scenario, PLC_file=plc)
