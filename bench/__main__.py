@@ -29,6 +29,7 @@ TOPICS = (
     "recording",
     "columns",
     "what_if",
+    "recorder",
     "offline",
     "graph",
     "service",

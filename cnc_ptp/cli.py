@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -24,8 +24,11 @@ from cnc_ptp.ros_arguments import client_namespace_option, namespace_option, ros
 from cnc_ptp.ros_arguments import split as split_ros_arguments
 from cnc_ptp.start_options import start_options, take_start
 
+if TYPE_CHECKING:
+    from cnc_ptp.recording.recorder_options import RecorderOptions
+
 MACHINE = click.argument("machine", type=click.Path(dir_okay=False))
-RECORDING = click.argument("recording", type=click.Path(dir_okay=False))
+RECORDING = click.argument("recording", type=click.Path())
 SCENARIO = click.option("--scenario", type=click.Path(dir_okay=False), help="Timed PLC commands (YAML).")
 PROGRAM = click.option("--program", type=click.Path(dir_okay=False), help="NC program for the first channel.")
 CLIENTS = ("status", "do", "jog", "watch")
@@ -50,8 +53,18 @@ def run_options(function: Callable[..., Any]) -> Callable[..., Any]:
     for option in (
         start_options,
         click.option("--strict", is_flag=True, help="A refused command makes the exit status 1."),
+        click.option(
+            "--compression",
+            type=click.Choice(("zstd", "lz4", "none")),
+            default="zstd",
+            show_default=True,
+            help="Compression of the recording.",
+        ),
+        click.option(
+            "--split", help="Record in parts of a size or a time, 500MB or 10min; the recording is a folder then."
+        ),
         click.option("--record-when", help="Begin the recording when a field has this value: 'x.set_velocity != 0'."),
-        click.option("--record", type=click.Path(dir_okay=False), help="Write an MCAP recording."),
+        click.option("--record", type=click.Path(), help="Write an MCAP recording."),
         click.option(
             "--duration", type=DURATION, help="End after this many seconds; default: when everything is finished."
         ),
@@ -109,9 +122,10 @@ def main(context: click.Context) -> None:
 def simulate_command(**options: Any) -> None:
     """Run a machine offline, as fast as possible."""
     from cnc_ptp.commands.run.simulate import simulate
+    from cnc_ptp.recording.recorder_options import FROM_THE_START
 
-    require_recording(options)
-    sys.exit(simulate(begin=take_start(options, options["program"]), **options))
+    recorder = take_recorder(options) or FROM_THE_START
+    sys.exit(simulate(begin=take_start(options, options["program"]), recorder=recorder, **options))
 
 
 @main.command("run")
@@ -119,6 +133,15 @@ def simulate_command(**options: Any) -> None:
 @click.option("--free-run", is_flag=True, help="As fast as all nodes follow, instead of in real time.")
 @click.option("--composed", is_flag=True, help="All nodes in one process.")
 @namespace_option
+@click.option(
+    "--recorder", "on_demand", is_flag=True, help="A recorder that records on demand: do recorder start FILE."
+)
+@click.option("--keep", type=POSITIVE, help="Keep the last seconds in memory: do recorder snapshot FILE.")
+@click.option("--snapshots", type=click.Path(file_okay=False), help="Folder for a snapshot at each error; with --keep.")
+@click.option(
+    "--snapshot-when",
+    help="A snapshot also when a field comes to a value: 'x.following_error > 0.1'; with --snapshots.",
+)
 @click.option("--stay", is_flag=True, help="Continue when everything is at a standstill, for commands, until Ctrl-C.")
 @click.option(
     "--state-rate", type=STATES_PER_SECOND, help="Live states per second on /<unit>/state, 0 = none (P-MACH-00070)."
@@ -131,19 +154,36 @@ def run_command(**options: Any) -> None:
         start_server()  # first: it imports for all nodes, which takes as long as what comes now
     from cnc_ptp.commands.run.run import run
 
-    require_recording(options)
+    recorder = take_recorder(options)
     if options["stay"] and options["duration"] is not None:
         raise click.UsageError("--stay and --duration exclude each other: --duration stays for that many seconds.")
     if options["stay"] and options["free_run"]:
         raise click.UsageError("--stay and --free-run exclude each other: a machine is commanded in real time.")
     ros_arguments().require_for_all_nodes("cnc_ptp run")
-    sys.exit(run(begin=take_start(options, options["program"]), **options))
+    sys.exit(run(begin=take_start(options, options["program"]), recorder=recorder, **options))
 
 
-def require_recording(options: dict[str, Any]) -> None:
-    """Raises UsageError for a trigger without a recording."""
-    if options["record_when"] is not None and options["record"] is None:
-        raise click.UsageError("--record-when needs --record")
+def take_recorder(options: dict[str, Any]) -> RecorderOptions | None:
+    """Takes the options of the recorder out of the others; None where there is none. Raises UsageError."""
+    from cnc_ptp.recording.recorder_options import RecorderOptions
+
+    when, split, keep = options.pop("record_when"), options.pop("split"), options.pop("keep", None)
+    folder, snapshot_when = options.pop("snapshots", None), options.pop("snapshot_when", None)
+    on_demand = options.pop("on_demand", False) or keep is not None
+    compression, record = options.pop("compression"), options["record"]
+    needs = (
+        (when, record, "--record-when needs --record"),
+        (split, record or on_demand or None, "--split needs --record"),
+        (folder, keep, "--snapshots needs --keep"),
+        (snapshot_when, folder, "--snapshot-when needs --snapshots"),
+    )
+    for given, needed, text in needs:
+        if given is not None and needed is None:
+            raise click.UsageError(text)
+    if record is None and not on_demand:
+        return None
+    scenario, plc = options["scenario"], options["plc"]
+    return RecorderOptions(when, split, compression, keep or 0.0, folder, snapshot_when, scenario, plc)
 
 
 def sweep_options(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -442,7 +482,7 @@ def program_options(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 @main.command("plot")
-@click.argument("recording", type=click.Path(dir_okay=False), metavar="FILE")
+@click.argument("recording", type=click.Path(), metavar="FILE")
 @click.argument("more_topics", metavar="[TOPIC]...", nargs=-1)
 @click.option("--topics", callback=words, multiple=True, help="Fields to draw: x/set_velocity s/actual_speed_rpm")
 @part_options
@@ -604,7 +644,7 @@ def identify_options(function: Callable[..., Any]) -> Callable[..., Any]:
     for option in (
         click.option("--record", type=click.Path(dir_okay=False), help="Write an MCAP recording of the run."),
         click.option("-o", "--output", type=click.Path(dir_okay=False), help="YAML file to write instead of printing."),
-        click.option("--recording", type=click.Path(dir_okay=False), help="Evaluate this recording, drive nothing."),
+        click.option("--recording", type=click.Path(), help="Evaluate this recording, drive nothing."),
         click.option("--machine", type=click.Path(dir_okay=False), help="Machine file; a recording has its own."),
         click.argument("axis"),
     ):

@@ -50,9 +50,9 @@ def _run(
     if watched or options.stay:
         monitor.watch_units()
     recorder = None
-    if options.record:  # before the units: it takes each block first
+    if options.recording:  # before the units: it takes each block first
         machine_yaml = machine_text(options.machine)
-        recorder = RecorderNode(machine, options.record, machine_yaml, when=options.record_when, handover=handover)
+        recorder = RecorderNode(machine, options.record, machine_yaml, options=options.recording, handover=handover)
     clock = ClockNode(
         machine,
         wait_for=observers_of(options),

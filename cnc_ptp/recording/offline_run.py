@@ -13,8 +13,9 @@ from cnc_ptp.protocol.blocks import CycleTick
 from cnc_ptp.protocol.unit import PLC, Unit
 from cnc_ptp.recording.checkpoints import CHECKPOINT_SECONDS, Checkpoints
 from cnc_ptp.recording.mcap_file import NOT_WRITTEN
+from cnc_ptp.recording.settings import Settings
 from cnc_ptp.recording.trigger import Condition, TriggeredRecording, make_recording
-from cnc_ptp.recording.writer import PLC_FILE, Recording
+from cnc_ptp.recording.writer import AS_USUAL, Recording
 
 
 class OfflineRun:
@@ -34,6 +35,7 @@ class OfflineRun:
         record: str | None = None,
         machine_text: str = "",
         condition: Condition | None = None,
+        settings: Settings = AS_USUAL,
         checkpoint_seconds: float = CHECKPOINT_SECONDS,
     ) -> None:
         """`units` in the order of computation; `machine_text` is kept in the recording `record`.
@@ -45,7 +47,7 @@ class OfflineRun:
         cycle_time_ns = parameters.cycle_time_us * 1000
         self._recording: Recording | None = None
         if record is not None:
-            self._recording = make_recording(record, machine_text, 0, cycle_time_ns, condition)
+            self._recording = make_recording(record, machine_text, 0, cycle_time_ns, condition, settings)
         self._checkpoints: Checkpoints | None = None
         if self._recording is not None and checkpoint_seconds > 0.0:
             self._checkpoints = Checkpoints(self._recording, parameters, checkpoint_seconds)
@@ -57,11 +59,6 @@ class OfflineRun:
     def run(self, *, cycles: int | None = None) -> Iterator[Outputs]:
         """Block by block to the end of the run, as OfflineMachine.run."""
         return map(self._recorded, self.machine.run(cycles=cycles))
-
-    def attach_plc(self, name: str, text: str) -> None:
-        """Keeps the text of a PLC in a file in the recording."""
-        if self._recording is not None:
-            self._recording.attachment(f"{PLC_FILE}{name}", "text/x-python", text)
 
     @property
     def checkpoint_fault(self) -> str:

@@ -19,6 +19,8 @@ from cnc_ptp.protocol.event_values import read_event_values
 from cnc_ptp.recording.bag import QOS
 from cnc_ptp.recording.mcap_chunks import McapRecords, MessageRun, RawRecord
 from cnc_ptp.recording.mcap_file import METADATA, MISSING
+from cnc_ptp.recording.origin import require_known_format
+from cnc_ptp.recording.parts import files_of
 from cnc_ptp.recording.writer import CHECKPOINT, CHECKPOINT_TEXT, MACHINE_FILE
 from cnc_ptp.wire.layout import Layout, Records, fixed_layout
 from cnc_ptp.wire.schemas import full_name, parse_schema
@@ -138,20 +140,24 @@ class Recorded:
 
 
 def read_recording(path: str | Path) -> Recorded:
-    """Reads everything that is whole in a file. Raises CncError 26001 to 26005 (see McapRecords, schemas)."""
+    """Reads everything that is whole in a file, or in the parts of a folder.
+
+    Raises CncError 26001 to 26005 (see McapRecords, schemas), 26014 and 26016.
+    """
     reader = _Reader(Path(path))
-    for record in reader.records:
-        reader.take(record)
+    for file in files_of(Path(path)):
+        reader.begin(file)
+        for record in reader.records:
+            reader.take(record)
+        reader.end_of_file()
     return reader.finish()
 
 
 def iter_messages(path: str | Path, topics: Collection[str] | None = None) -> Iterator[RawMessage]:
     """All whole messages in log-time order, as bytes; of the given topics only. Same errors as read_recording."""
-    records = McapRecords(Path(path))
-    names = _Names(records)
     waiting: list[tuple[int, int, RawMessage]] = []
     serial = 0
-    for record in records:
+    for records, names, record in _all_records(Path(path)):
         names.take(record)
         if record.opcode != Opcode.CHUNK:
             continue
@@ -168,6 +174,14 @@ def iter_messages(path: str | Path, topics: Collection[str] | None = None) -> It
         yield heapq.heappop(waiting)[2]
 
 
+def _all_records(path: Path) -> Iterator[tuple[McapRecords, _Names, RawRecord]]:
+    """Of a file, or of the parts of a folder one after another."""
+    for file in files_of(path):
+        records = McapRecords(file)
+        names = _Names(records, {})
+        yield from ((records, names, record) for record in records)
+
+
 def _raw_messages(info: TopicInfo, run: MessageRun) -> Iterator[RawMessage]:
     for time, content in zip(run.head["log_time"].tolist(), run.contents, strict=True):
         yield RawMessage(info.topic, info.type_name, time, content.tobytes())
@@ -176,12 +190,13 @@ def _raw_messages(info: TopicInfo, run: MessageRun) -> Iterator[RawMessage]:
 class _Names:
     """Schemas and channels of a file as they are read."""
 
-    def __init__(self, records: McapRecords) -> None:
+    def __init__(self, records: McapRecords, by_name: dict[str, TopicInfo]) -> None:
+        """`by_name`: topics of the files before, to which those of this file are added."""
         self.records = records
         self.schemas: dict[int, Schema] = {}
         self.channels: dict[int, Channel] = {}
         self.topics: dict[int, TopicInfo] = {}
-        self.by_name: dict[str, TopicInfo] = {}
+        self.by_name = by_name
 
     def take(self, record: RawRecord) -> None:
         if record.opcode == Opcode.SCHEMA:
@@ -209,11 +224,14 @@ class _Names:
 
 
 class _Reader:
-    """Collects the contents of the records of a file."""
+    """Collects the contents of the records of files, one after another."""
+
+    records: McapRecords
+    names: _Names
 
     def __init__(self, path: Path) -> None:
-        self.records = McapRecords(path)
-        self.names = _Names(self.records)
+        self._by_name: dict[str, TopicInfo] = {}
+        self._missing: list[str] = []
         self.recorded = Recorded(path)
         self._layouts: dict[str, Layout] = {}
         self._rows: dict[str, list[npt.NDArray[np.uint8]]] = {}
@@ -224,6 +242,14 @@ class _Reader:
             DIAGNOSTICS: self._diagnostics,
             OFFSETS: self._offsets,
         }
+
+    def begin(self, file: Path) -> None:
+        self.records = McapRecords(file)
+        self.names = _Names(self.records, self._by_name)
+
+    def end_of_file(self) -> None:
+        if self.records.missing:
+            self._missing.append(self.records.missing)
 
     def take(self, record: RawRecord) -> None:
         self.names.take(record)
@@ -239,6 +265,7 @@ class _Reader:
         elif record.opcode == Opcode.METADATA:
             metadata = self.records.parse(Metadata.read, record)
             if metadata.name == METADATA:
+                require_known_format(self.recorded.path, metadata.metadata)
                 self.recorded.metadata.update(metadata.metadata)
 
     def _attachment(self, name: str, data: bytes) -> None:
@@ -247,10 +274,10 @@ class _Reader:
 
     def finish(self) -> Recorded:
         recorded = self.recorded
-        recorded.missing = recorded.metadata.get(MISSING, self.records.missing)
-        recorded.complete = self.records.complete and not recorded.missing
+        recorded.missing = recorded.metadata.get(MISSING, "; ".join(self._missing))
+        recorded.complete = not recorded.missing
         recorded.machine_yaml = recorded.attachments.pop(MACHINE_FILE, "")
-        recorded.topics = {topic: info for topic, info in self.names.by_name.items() if info.count}
+        recorded.topics = {topic: info for topic, info in self._by_name.items() if info.count}
         for topic, rows in self._rows.items():
             self._store(recorded.topics[topic], self._layouts[topic].read(np.concatenate(rows).reshape(-1)))
         recorded.events.sort(key=lambda event: event.cycle)

@@ -87,8 +87,12 @@ class WhatIf:
             machine = changed
         while machine.next_cycle < self.end:
             outputs = machine.changed_tick(self._changed_commands(machine.next_cycle))
-            channels = [name for name, each in outputs.items() if isinstance(each.block, ChannelBlock)]
-            self.running = [name for name in channels if outputs[name].block.state[-1] not in RESTING]
+            blocks = {name: output.block for name, output in outputs.items()}
+            self.running = [
+                name
+                for name, block in blocks.items()
+                if isinstance(block, ChannelBlock) and block.state[-1] not in RESTING
+            ]
             yield outputs
 
     def _end_at(self, seconds: float) -> int:

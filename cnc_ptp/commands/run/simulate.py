@@ -6,7 +6,6 @@ import gc
 import time
 from collections import defaultdict
 from dataclasses import dataclass, field
-from pathlib import Path
 from types import FrameType
 
 from rich.console import Console
@@ -37,6 +36,7 @@ from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.recording.checkpoints import CHECKPOINT_SECONDS
 from cnc_ptp.recording.offline_run import OfflineRun
 from cnc_ptp.recording.overwriting import check_recording
+from cnc_ptp.recording.recorder_options import FROM_THE_START, RecorderOptions
 from cnc_ptp.recording.trigger import Condition
 
 LONG_CYCLE = 1.0
@@ -84,23 +84,28 @@ def simulate(
     dialect: str | None = None,
     begin: StartPoint | None = None,
     plc: str | None = None,
-    record_when: str | None = None,
     checkpoints: float = CHECKPOINT_SECONDS,
+    recorder: RecorderOptions = FROM_THE_START,
 ) -> int:
     """Runs offline; prints a summary. Status 1 when a unit ended in error, with `strict` also for a refused command."""
     check_recording(record, machine_file=machine, NC_program=program, scenario=scenario, PLC_file=plc)
     parameters = read_machine(machine)
     print_missing_folders(parameters)
     job = read_entries(parameters, program=program, scenario=scenario, dialect=dialect, begin=begin)
-    condition = None if record_when is None else Condition(record_when, unit_kinds(parameters))
+    condition = None if recorder.when is None else Condition(recorder.when, unit_kinds(parameters))
+    settings = recorder.settings()
     file = None if plc is None else read_plc(plc)
     units = build_units(parameters, scenario=job, end_when_idle=duration is None, plc_file=file)
     text = machine_text(machine)
     run = OfflineRun(
-        parameters, units, record=record, machine_text=text, condition=condition, checkpoint_seconds=checkpoints
+        parameters,
+        units,
+        record=record,
+        machine_text=text,
+        condition=condition,
+        settings=settings,
+        checkpoint_seconds=checkpoints,
     )
-    if plc is not None:
-        run.attach_plc(Path(plc).name, Path(plc).read_text(encoding="utf-8"))
     cycles = None if duration is None else round(duration * 1e6 / parameters.cycle_time_us)
     result = Result()
     gc.freeze()  # what was loaded stays to the end: nothing to be searched for garbage

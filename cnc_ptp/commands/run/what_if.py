@@ -12,9 +12,9 @@ from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.parameters import load_machine
 from cnc_ptp.plc.scenario import Entry, parse_scenario
 from cnc_ptp.recording.offline_run import write
+from cnc_ptp.recording.origin import origin
 from cnc_ptp.recording.overwriting import check_recording
 from cnc_ptp.recording.run_inputs import RunInputs
-from cnc_ptp.recording.trigger import origin
 from cnc_ptp.recording.what_if import Change, WhatIf
 from cnc_ptp.recording.writer import Recording
 
