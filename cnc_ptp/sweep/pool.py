@@ -72,7 +72,7 @@ class Pool:
 
     @property
     def threads(self) -> int:
-        """Of all workers; they may come and go."""
+        """Of all workers at this moment."""
         return sum(self._client.nthreads().values()) or 1
 
     def compute(self, job: Job, variants: Iterable[Variant], ended: Callable[[], bool]) -> Iterator[Row]:
