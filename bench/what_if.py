@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import statistics
 import tempfile
 import time
 from collections.abc import Iterator
@@ -12,9 +13,8 @@ from typing import NamedTuple
 
 import yaml
 
-from bench import recording as short
 from bench.columns import AXES, HOUR, one_second, repeat_second
-from bench.figures import Effort, Figure, ShowProgress, median_of, stopwatch
+from bench.figures import Effort, Figure, ShowProgress, Stopwatch, median_of, stopwatch
 from bench.jobs import MACHINE, long_program
 from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.wiring import build_units
@@ -62,9 +62,17 @@ def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
         write_recording(path, seconds, middle, state, store.texts)
         show("reading")
         begin = seconds / 2 + CHECKPOINT_SECONDS / 2
-        first = median_of(effort.runs, short.seconds(lambda: first_block(path, begin)))
+        watches = [timed(path, begin) for _ in range(effort.runs)]
+        first = statistics.median(watch.wall for watch in watches)
         length = f"{seconds / 60:.0f} min of {len(AXES)} axes"
         yield Figure(f"what-if from the middle of {length} to its first block", first, "s", goal=2.0, at_most=True)
+        yield Figure("its processor time", statistics.median(watch.cpu for watch in watches), "s")
+
+
+def timed(path: Path, begin: float) -> Stopwatch:
+    with stopwatch() as watch:
+        first_block(path, begin)
+    return watch
 
 
 def processor_seconds(store: StateStore, machine: OfflineMachine) -> float:

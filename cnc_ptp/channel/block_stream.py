@@ -28,7 +28,7 @@ class RunAnswer(NamedTuple):
 
 
 class RunSource(ABC):
-    """An interpreter that runs with the program: an iterator that is told what only the run knows."""
+    """An interpreter that runs with the program: an iterator that gets to know what only the run knows."""
 
     @abstractmethod
     def __iter__(self) -> RunSource: ...

@@ -18,8 +18,7 @@ from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.sections import Program
 
 MOST_ANSWERS: Final = 100_000
-"""Waits of one program that are remembered. One that has more cannot be stored any more, or it would need ever more
-memory."""
+"""Waits of one program that are remembered. One that has more is not stored, or it would need ever more memory."""
 
 
 class RunningBlocks(RunSource):
@@ -28,7 +27,7 @@ class RunningBlocks(RunSource):
     state       of the interpreter; it changes with each block
     before      the state in which the program started
     asked       how many blocks were asked for
-    ended       nothing comes any more: the program was finished, or had a fault
+    ended       nothing follows: the program was finished, or had a fault
     forgotten   there were more answers than are remembered
     """
 

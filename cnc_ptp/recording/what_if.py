@@ -17,7 +17,7 @@ from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters, load_machine
 from cnc_ptp.parameters.changed import changed_text
 from cnc_ptp.plc.scenario import Entry
-from cnc_ptp.protocol.blocks import ChannelBlock, Command, CommandRecord, PlcBlock, json_of
+from cnc_ptp.protocol.blocks import ChannelBlock, Command, CommandRecord, CycleBlock, PlcBlock, json_of
 from cnc_ptp.protocol.channel_states import ChannelStateCode
 from cnc_ptp.protocol.commands import COUPLINGS
 from cnc_ptp.protocol.unit import PLC
@@ -87,12 +87,7 @@ class WhatIf:
             machine = changed
         while machine.next_cycle < self.end:
             outputs = machine.changed_tick(self._changed_commands(machine.next_cycle))
-            blocks = {name: output.block for name, output in outputs.items()}
-            self.running = [
-                name
-                for name, block in blocks.items()
-                if isinstance(block, ChannelBlock) and block.state[-1] not in RESTING
-            ]
+            self.running = [name for name, output in outputs.items() if is_running(output.block)]
             yield outputs
 
     def _end_at(self, seconds: float) -> int:
@@ -175,7 +170,7 @@ class WhatIf:
 Given = tuple[int, str, str, str]
 """Cycle, target, name and arguments of a command."""
 ANSWERS: Final = ("acknowledge", "coupling_answer", "gear_changed")
-RESTING: Final = (ChannelStateCode.IDLE, ChannelStateCode.READY)
+RESTING: Final = (int(ChannelStateCode.IDLE), int(ChannelStateCode.READY))
 PLC_SWITCHES: Final = ("auto_acknowledge", "serve")
 
 
@@ -216,6 +211,11 @@ class GivenByUnits:
             known = command.command != "acknowledge" or command.arguments.get("id") in self._requests
             if is_channel or (command.command in ANSWERS and known):
                 self._known.add((block.first_cycle, command.target, command.command, json_of(command.arguments)))
+
+
+def is_running(block: CycleBlock) -> bool:
+    """A channel whose program has not ended."""
+    return isinstance(block, ChannelBlock) and int(block.state[-1]) not in RESTING
 
 
 def by_unit(commands: Sequence[Command]) -> dict[str, list[Command]]:

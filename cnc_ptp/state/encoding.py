@@ -214,7 +214,7 @@ class Encoder:
         row += ["p", *self._values(parts, "()")]
 
     def _iterator(self, found: Any, row: Row) -> None:
-        """Of a list or tuple; what was taken from it is not needed any more."""
+        """Of a list or tuple; what was taken from it is not needed."""
         state = found.__reduce__()
         items, taken = state[1][0], state[2] if len(state) > 2 else 0
         digest = self._beside(items) if len(items) - taken >= LONG_LIST else None
