@@ -43,7 +43,7 @@ AFTER = 0.5
 MARGIN = 1.0
 """Seconds that are kept beyond those that may be asked for, because a snapshot waits for its last block."""
 MOST_SNAPSHOTS = 100
-"""That a run takes by itself."""
+"""That a run takes automatically."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -226,7 +226,7 @@ class OnDemand:
         if failed is not None:
             failed.close()
 
-    # by itself
+    # automatic snapshots
 
     def _look_for(self, holds: bool, cycle: int) -> None:
         if holds and not self._held_before:

@@ -24,7 +24,7 @@ EXAMPLES = "500MB or 10min"
 
 @dataclass(frozen=True, slots=True)
 class Split:
-    """When a recording goes on in another file: after so many bytes or seconds of the machine; 0: not for that."""
+    """When a recording continues in another file: after so many bytes or seconds of the machine; 0: not for that."""
 
     size: float = 0.0
     seconds: float = 0.0
