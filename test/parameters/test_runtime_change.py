@@ -29,14 +29,14 @@ FIXED = "cannot be written at run time, it is taken over at start-up only"
     [
         ("x", "kopf.achs_nr", 4, f"23095 axis x: P-AXIS-00016 (kopf.achs_nr) {FIXED}, as the manual has it"),
         ("x", "vorsteuer.vorsteuerung", "VEL", f"23095 axis x: P-AXIS-00223 (vorsteuer.vorsteuerung) {FIXED}"),
-        ("x", "max_points", 40, "23095 axis x: axis /x has no parameter 'max_points'; did you mean frict_comp.max_points (P-COMP-00062)?"),
+        ("x", "max_points", 40, "23095 axis x: axis x has no parameter 'max_points'; did you mean frict_comp.max_points (P-COMP-00062)?"),
         ("x", "getriebe.0.kv", 0, "23096 axis x: P-AXIS-00099 getriebe[0].kv: value 0 is not above 0 (0.01/s)"),
         ("x", "getriebe.0.kv", "fast", "23096 axis x: P-AXIS-00099 getriebe[0].kv: value 'fast' is text, an integer is needed"),
         ("s", "getriebe.0.kv", 4000, f"23095 spindle s: P-AXIS-00099 (getriebe[i].kv) {FIXED}"),
         ("ch", "max_vb_override", 1000, f"23095 channel ch: P-CHAN-00056 (max_vb_override) {FIXED}"),
-        ("ch", "frict_comp.max_points", 40, "23095 channel ch: channel /ch has no parameter 'frict_comp.max_points', P-COMP-00062 belongs to axis and spindle nodes"),
+        ("ch", "frict_comp.max_points", 40, "23095 channel ch: channel ch has no parameter 'frict_comp.max_points', P-COMP-00062 belongs to axis and spindle nodes"),
         ("machine", "axes", ("x", "z"), f"23095 machine machine: P-MACH-00005 (axes) {FIXED}"),
-        ("machine", "use_sim_time", True, "23095 machine machine: machine /machine has no parameter 'use_sim_time'"),
+        ("machine", "use_sim_time", True, "23095 machine machine: machine has no parameter 'use_sim_time'"),
     ],
 )  # fmt: skip
 def test_every_refusal_has_number_and_reason(node: str, name: str, value: Value, text: str) -> None:

@@ -87,8 +87,8 @@ KV = "axis list, P-AXIS-00099 getriebe[0].kv of /x"
         (["kv"], "26177 --vary: 'kv' is not of the form unit.parameter=range, as x.getriebe.0.kv=2000:8000:13"),
         (["x=1:2:3"], "26177 --vary: 'x=1:2:3' is not of the form unit.parameter=range, as x.getriebe.0.kv=2000:8000:13"),
         (["chanel.achse=1"], "26178 --vary: the machine has no unit 'chanel'; did you mean channel?"),
-        (["x.getriebe.0.kvv=1"], "26178 --vary: axis /x has no parameter 'getriebe.0.kvv'; did you mean getriebe[i].kv (P-AXIS-00099)?"),
-        (["x.spindel.0.bezeichnung=1"], "26178 --vary: axis /x has no parameter 'spindel.0.bezeichnung', P-CHAN-00007 belongs to channel nodes"),
+        (["x.getriebe.0.kvv=1"], "26178 --vary: axis x has no parameter 'getriebe.0.kvv'; did you mean getriebe[i].kv (P-AXIS-00099)?"),
+        (["x.spindel.0.bezeichnung=1"], "26178 --vary: axis x has no parameter 'spindel.0.bezeichnung', P-CHAN-00007 belongs to channel nodes"),
         (["x.getriebe.0.kv=1:2:2", "x.P-AXIS-00099=3"], "26177 --vary: x.getriebe.0.kv varies 2 times"),
     ],
 )  # fmt: skip

@@ -74,7 +74,7 @@ def unknown_name(ros_name: str, node: str, kind: str) -> str:
     """
     lists = catalogue()
     key, _ = split_indexes(ros_name)
-    text = f"{kind} {node} has no parameter {shown(ros_name)}"
+    text = f"{node if node == kind else f'{kind} {node}'} has no parameter {shown(ros_name)}"
     owners = [other for other, keys in lists.by_key.items() if key in keys]
     if owners:
         declaration = lists.by_key[owners[0]][key]
