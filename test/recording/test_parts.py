@@ -24,21 +24,26 @@ from cnc_ptp.protocol.blocks import PlcBlock
 from cnc_ptp.recording.closing import close_cut_recording
 from cnc_ptp.recording.offline_run import OfflineRun
 from cnc_ptp.recording.origin import origin, revision
-from cnc_ptp.recording.reader import iter_messages, read_recording
+from cnc_ptp.recording.reader import STATE_TYPES, iter_messages, read_recording
+from cnc_ptp.recording.run_inputs import RunInputs
 from cnc_ptp.recording.settings import Settings, Split, read_split
 from cnc_ptp.recording.verify import verify
+from cnc_ptp.recording.what_if import Change, WhatIf
 from cnc_ptp.recording.writer import Recording
 
 PTP_FILE = ROOT / "config" / "ptp.yaml"
 SCENARIO = "- {at: 0.0, to: x, do: move_absolute, target: 300, velocity: 100}\n"
 
 
-def run(path, settings, seconds=3.5):
+def run(path, settings, seconds=3.5, checkpoints=10.0):
     """The same run each time."""
     entries = parse_scenario(SCENARIO, "test.yaml", unit_kinds(PTP))
     units = build_units(PTP, scenario=entries, end_when_idle=False)
     text = machine_text(PTP_FILE)
-    with OfflineRun(PTP, units, record=str(path), machine_text=text, settings=settings) as offline:
+    record = str(path)
+    with OfflineRun(
+        PTP, units, record=record, machine_text=text, settings=settings, checkpoint_seconds=checkpoints
+    ) as offline:
         for _ in offline.run(cycles=round(seconds * 1000)):
             pass
     return path
@@ -134,6 +139,24 @@ def test_metadata_of_parts_is_that_of_rosbag2(parts):
         assert entry["starting_time"]["nanoseconds_since_epoch"] == statistics.message_start_time
         span = statistics.message_end_time - statistics.message_start_time
         assert entry["duration"]["nanoseconds"] == span
+
+
+def test_a_run_begins_again_at_a_checkpoint_in_any_part(tmp_path):
+    split = run(tmp_path / "split", Settings(split=Split(seconds=1.0)), checkpoints=0.8)
+    one = run(tmp_path / "one.mcap", Settings(), checkpoints=0.8)
+    with RunInputs(split) as parts, RunInputs(one) as whole:
+        assert parts.checkpoints == whole.checkpoints == [800, 1600, 2400, 3200]
+        assert [parts.checkpoint(n) for n in parts.checkpoints] == [whole.checkpoint(n) for n in whole.checkpoints]
+        assert (parts.commands, parts.end, parts.machine_yaml) == (whole.commands, 3500, whole.machine_yaml)
+        assert parts.checkpoint_texts() == whole.checkpoint_texts()
+        assert sorted(parts.messages(STATE_TYPES)) == sorted(whole.messages(STATE_TYPES))
+    recorded = states_of(one)["/x/state"]
+    with RunInputs(split) as parts:
+        what_if = WhatIf(parts, Change(begin=2.5))
+        blocks = [outputs["x"].block for outputs in what_if.run()]
+    assert "checkpoint at 2.4 s" in what_if.note
+    positions = np.concatenate([np.asarray(block.set_position) for block in blocks])
+    assert positions.tobytes() == recorded["set_position"][2500:].tobytes()
 
 
 def test_parts_of_a_size(whole, tmp_path):
@@ -274,6 +297,7 @@ def test_a_recording_from_the_future_is_refused_by_every_command(tmp_path):
         "use a newer version of cnc_ptp"
     )
     assert refusal(read_recording, path) == text == refusal(cnc_ptp.recording.open, path)
+    assert refusal(RunInputs, path) == text
     commands = (
         ["replay"],
         ["report", "-o", "page.html"],
@@ -287,6 +311,15 @@ def test_a_recording_from_the_future_is_refused_by_every_command(tmp_path):
     assert refusal(read_recording, other).startswith(
         f"P-ERR-26016 recording {other}: has format b, this version reads up"
     )
+
+
+def test_a_run_that_lacks_commands_is_not_computed_with_changes(tmp_path):
+    path = from_the_future(tmp_path / "late.mcap", not_computable="commands before cycle 10 are missing")
+    text = (
+        f"P-ERR-26018 recording {path}: commands before cycle 10 are missing; the run cannot be computed again, its "
+        "states can be read and drawn"
+    )
+    assert refusal(RunInputs, path) == text
 
 
 def test_recordings_without_a_format_are_the_oldest(tmp_path):
