@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 from mcap.opcode import Opcode
-from mcap.records import Channel, Footer, Metadata, MetadataIndex, Schema, Statistics
+from mcap.records import AttachmentIndex, Channel, Footer, Metadata, MetadataIndex, Schema, Statistics
 from mcap.writer import MCAP0_MAGIC
 
 from cnc_ptp.recording.mcap_chunks import MessageRun, RawRecord, RecordReader
@@ -55,6 +55,8 @@ class McapIndex(RecordReader):
         self.counts: dict[int, int] = {}
         """Messages by channel."""
         self.metadata: list[Metadata] = []
+        self.attachments: list[int] = []
+        """Where their records begin."""
         try:
             self._file = os.open(path, os.O_RDONLY)
             self._size = os.fstat(self._file).st_size
@@ -81,7 +83,7 @@ class McapIndex(RecordReader):
 
     def runs(self, place: ChunkPlace, channels: Collection[int]) -> Iterator[MessageRun]:
         """The messages of some channels in a chunk, in the order of their log times as far as it has an index."""
-        record = self._record(place.offset)
+        record = self.record(place.offset)
         if not place.indexes:
             yield from (run for run in self.in_chunk(record) if isinstance(run, MessageRun) and run[0] in channels)
             return
@@ -104,7 +106,7 @@ class McapIndex(RecordReader):
             yield MessageRun(channel, _rows(data, offsets[first:end], int(sizes[first])))
 
     def _message_offsets(self, offset: int) -> npt.NDArray[np.int64]:
-        body = self._record(offset).body
+        body = self.record(offset).body
         if (len(body) - 6) % INDEX_ENTRY.itemsize:
             raise self.corrupt(offset, "the message index is no list of times and offsets")
         offsets: npt.NDArray[np.int64] = np.frombuffer(body[6:], dtype=INDEX_ENTRY)["offset"].astype(np.int64)
@@ -115,7 +117,7 @@ class McapIndex(RecordReader):
     def _bytes(self, offset: int, length: int) -> bytes:
         return os.pread(self._file, length, offset)
 
-    def _record(self, offset: int) -> RawRecord:
+    def record(self, offset: int) -> RawRecord:
         """The record at an offset."""
         head = self._bytes(offset, RECORD_PREFIX.size)
         if len(head) == RECORD_PREFIX.size:
@@ -141,7 +143,9 @@ class McapIndex(RecordReader):
                 self.chunks.append(self._chunk_place(record))
             elif record.opcode == Opcode.METADATA_INDEX:
                 place = self.parse(MetadataIndex.read, record)
-                self.metadata.append(self.parse(Metadata.read, self._record(place.offset)))
+                self.metadata.append(self.parse(Metadata.read, self.record(place.offset)))
+            elif record.opcode == Opcode.ATTACHMENT_INDEX:
+                self.attachments.append(self.parse(AttachmentIndex.read, record).offset)
 
     def _chunk_place(self, record: RawRecord) -> ChunkPlace:
         try:
@@ -154,11 +158,13 @@ class McapIndex(RecordReader):
 
     def _scan(self) -> None:
         """All whole records of a file without a list of its chunks, which are uncompressed for their channels."""
-        self.counts, self.metadata = {}, []
+        self.counts, self.metadata, self.attachments = {}, [], []
         for record in self._records(len(MCAP0_MAGIC)):
             self._take_name(record)
             if record.opcode == Opcode.METADATA:
                 self.metadata.append(self.parse(Metadata.read, record))
+            elif record.opcode == Opcode.ATTACHMENT:
+                self.attachments.append(record.offset)
             elif record.opcode == Opcode.CHUNK:
                 first, last = struct.unpack_from("<QQ", record.body)
                 self.chunks.append(ChunkPlace(first, last, record.offset, len(record.body), NO_INDEX))

@@ -17,7 +17,7 @@ from mcap_ros2.decoder import DecoderFactory
 from cnc_ptp.protocol.blocks import CommandRecord, Event, read_values
 from cnc_ptp.protocol.event_values import read_event_values
 from cnc_ptp.recording.bag import QOS
-from cnc_ptp.recording.mcap_chunks import McapRecords, MessageRun, RawRecord
+from cnc_ptp.recording.mcap_chunks import McapRecords, MessageRun, RawRecord, RecordReader
 from cnc_ptp.recording.mcap_file import METADATA, MISSING
 from cnc_ptp.recording.writer import MACHINE_FILE
 from cnc_ptp.wire.layout import Layout, Records, fixed_layout
@@ -69,6 +69,27 @@ class Coordinates(NamedTuple):
     origin: tuple[float, ...]
 
 
+@dataclass(frozen=True, slots=True)
+class Reduced:
+    """What a long recording (`long_recording.py`) keeps of all its cycles.
+
+    stride       cycles from one of its states to the next; two together are the extremes of 2 · stride cycles
+    last_cycle   of all states
+    path_stride  cycles from one of `paths` to the next, which are states as they were, by axis
+    largest      following error and its cycle, by axis
+    in_program   cycles in which a program was being executed, by channel
+    missing      blocks
+    """
+
+    stride: int
+    last_cycle: int
+    path_stride: int
+    paths: dict[str, Records]
+    largest: dict[str, tuple[float, int]]
+    in_program: dict[str, int]
+    missing: int
+
+
 class RawMessage(NamedTuple):
     """A message as it lies in the file."""
 
@@ -85,7 +106,7 @@ class Recorded:
     `states[topic]` is a structured array (n,) in the order of the file with the fields of the message (`cycle`,
     `set_position`, …, `header.stamp.sec`, `header.stamp.nanosec`), `threads[channel]` one with the cycles of its
     threads. `complete` is False when the file was cut off;
-    `missing` then says what is missing.
+    `missing` then says what is missing. `reduced`: of a long recording, whose states are extremes of many cycles.
     """
 
     path: Path
@@ -102,6 +123,12 @@ class Recorded:
     commands: list[CommandRecord] = field(default_factory=list)
     diagnostics: list[Diagnostic] = field(default_factory=list)
     coordinates: list[Coordinates] = field(default_factory=list)
+    reduced: Reduced | None = None
+
+    @property
+    def stride(self) -> int:
+        """Cycles from one state to the next; more than 1 where they were reduced."""
+        return 1 if self.reduced is None else self.reduced.stride
 
     @property
     def start_ns(self) -> int:
@@ -114,6 +141,8 @@ class Recorded:
     @property
     def last_cycle(self) -> int:
         """The last cycle of which a state was recorded, -1 if none was."""
+        if self.reduced is not None:
+            return self.reduced.last_cycle
         return max((int(rows["cycle"].max()) for rows in self.states.values()), default=-1)
 
     @property
@@ -139,10 +168,11 @@ class Recorded:
 
 def read_recording(path: str | Path) -> Recorded:
     """Reads everything that is whole in a file. Raises CncError 26001 to 26005 (see McapRecords, schemas)."""
-    reader = _Reader(Path(path))
-    for record in reader.records:
+    records = McapRecords(Path(path))
+    reader = Reader(records)
+    for record in records:
         reader.take(record)
-    return reader.finish()
+    return reader.finish(complete=records.complete, missing=records.missing)
 
 
 def iter_messages(path: str | Path, topics: Collection[str] | None = None) -> Iterator[RawMessage]:
@@ -176,7 +206,7 @@ def _raw_messages(info: TopicInfo, run: MessageRun) -> Iterator[RawMessage]:
 class _Names:
     """Schemas and channels of a file as they are read."""
 
-    def __init__(self, records: McapRecords) -> None:
+    def __init__(self, records: RecordReader) -> None:
         self.records = records
         self.schemas: dict[int, Schema] = {}
         self.channels: dict[int, Channel] = {}
@@ -208,13 +238,13 @@ class _Names:
         return info
 
 
-class _Reader:
+class Reader:
     """Collects the contents of the records of a file."""
 
-    def __init__(self, path: Path) -> None:
-        self.records = McapRecords(path)
-        self.names = _Names(self.records)
-        self.recorded = Recorded(path)
+    def __init__(self, records: RecordReader) -> None:
+        self.records = records
+        self.names = _Names(records)
+        self.recorded = Recorded(records.path)
         self._layouts: dict[str, Layout] = {}
         self._rows: dict[str, list[npt.NDArray[np.uint8]]] = {}
         self._decoders = DecoderFactory()
@@ -230,21 +260,23 @@ class _Reader:
         if record.opcode == Opcode.CHUNK:
             for item in self.records.in_chunk(record):
                 if isinstance(item, MessageRun):
-                    self._messages(item, record)
+                    self.messages(item, record)
                 else:
                     self.names.add(item)
         elif record.opcode == Opcode.ATTACHMENT:
             attachment = self.records.attachment(record)
             self.recorded.attachments[attachment.name] = attachment.data.decode(errors="replace")
         elif record.opcode == Opcode.METADATA:
-            metadata = self.records.parse(Metadata.read, record)
-            if metadata.name == METADATA:
-                self.recorded.metadata.update(metadata.metadata)
+            self.metadata(self.records.parse(Metadata.read, record))
 
-    def finish(self) -> Recorded:
+    def metadata(self, metadata: Metadata) -> None:
+        if metadata.name == METADATA:
+            self.recorded.metadata.update(metadata.metadata)
+
+    def finish(self, *, complete: bool, missing: str) -> Recorded:
         recorded = self.recorded
-        recorded.missing = recorded.metadata.get(MISSING, self.records.missing)
-        recorded.complete = self.records.complete and not recorded.missing
+        recorded.missing = recorded.metadata.get(MISSING, missing)
+        recorded.complete = complete and not recorded.missing
         recorded.machine_yaml = recorded.attachments.pop(MACHINE_FILE, "")
         recorded.topics = {topic: info for topic, info in self.names.by_name.items() if info.count}
         for topic, rows in self._rows.items():
@@ -262,7 +294,7 @@ class _Reader:
         else:
             self.recorded.states[info.topic] = rows
 
-    def _messages(self, run: MessageRun, record: RawRecord) -> None:
+    def messages(self, run: MessageRun, record: RawRecord) -> None:
         info = self.names.topic(run, record)
         times = run.head["log_time"]
         info.first_ns = int(times.min()) if info.count == 0 else min(info.first_ns, int(times.min()))

@@ -9,14 +9,15 @@ from pathlib import Path
 
 from cnc_ptp.commands.output_file import check_page, write_output
 from cnc_ptp.plots.report import report_page
-from cnc_ptp.recording.reader import Recorded, read_recording
+from cnc_ptp.recording.long_recording import read_for_report
+from cnc_ptp.recording.reader import Recorded
 from cnc_ptp.recording.selection import selected
 
 
 def report(recording: str, output: str, begin: float | None, end: float | None, axes: Sequence[str]) -> int:
     """Writes the page, of a part if asked for; warns when the recording was cut off."""
     check_page(output, recording=recording)
-    whole = read_recording(recording)
+    whole = read_for_report(recording, begin, end)
     recorded = selected(whole, begin=begin, end=end, units=axes)
     made = datetime.now(tz=UTC).strftime("%Y-%m-%d %H:%M UTC")
     page = report_page(recorded, program=program_of(whole), date=made)
