@@ -303,11 +303,19 @@ def part_options(function: Callable[..., Any]) -> Callable[..., Any]:
 @main.command("report")
 @RECORDING
 @part_options
+@click.option("--compare", type=click.Path(dir_okay=False), help="Another recording, drawn on top of this one.")
+@click.option(
+    "--align",
+    type=click.Choice(("program", "start")),
+    default="program",
+    show_default=True,
+    help="With --compare: starts of the programs, or of the recordings, at the same time.",
+)
 @click.option("-o", "--output", required=True, type=click.Path(dir_okay=False), help="HTML file to write.")
 def report_command(**options: Any) -> None:
     """Make one self-contained HTML page of a recording.
 
-    It shows plots, events, errors and statistics.
+    It shows plots, events, errors and statistics; with --compare two recordings and what differs.
     """
     from cnc_ptp.commands.look.report import report
 

@@ -123,11 +123,7 @@ def _plane_figure(path: Path, axes: Sequence[str]) -> go.Figure:
     figure = go.Figure([line, marks])
     if path.programmed is not None:
         figure.add_trace(go.Scatter(**_coordinates(path.programmed, 2, precise=True), **PROGRAMMED))
-    style(figure, HEIGHT)
-    figure.update_layout(showlegend=False, margin={"l": 70, "r": 10, "t": 20, "b": 50}, hovermode="closest")
-    figure.update_layout(meta={"places": 1})
-    figure.update_xaxes(title_text=f"{escape(axis_label(axes[0]))} in mm")
-    figure.update_yaxes(title_text=f"{escape(axis_label(axes[1]))} in mm", scaleanchor="x", scaleratio=1)
+    style_plane(figure, axes, [1])
     _add_choice(figure, path, 1, "marker", axes[:2])
     return figure
 
@@ -145,9 +141,26 @@ def _space_figure(path: Path, axes: Sequence[str]) -> go.Figure:
     figure = go.Figure([line])
     if path.programmed is not None:
         figure.add_trace(go.Scatter3d(**_coordinates(path.programmed, 3, precise=True), **PROGRAMMED))
-    figure.add_trace(go.Scatter3d(x=[None], y=[None], z=[None], **CURSOR))
+    style_space(figure, axes, [0])
+    _add_choice(figure, path, 0, "line", axes)
+    return figure
+
+
+def style_plane(figure: go.Figure, axes: Sequence[str], places: Sequence[int]) -> None:
+    """`places`: traces with the places over time."""
     style(figure, HEIGHT)
-    figure.update_layout(meta={"places": 0, "cursor": len(figure.data) - 1})
+    figure.update_layout(showlegend=False, margin={"l": 70, "r": 10, "t": 20, "b": 50}, hovermode="closest")
+    figure.update_layout(meta={"places": [*places]})
+    figure.update_xaxes(title_text=f"{escape(axis_label(axes[0]))} in mm")
+    figure.update_yaxes(title_text=f"{escape(axis_label(axes[1]))} in mm", scaleanchor="x", scaleratio=1)
+
+
+def style_space(figure: go.Figure, axes: Sequence[str], places: Sequence[int]) -> None:
+    """The same in space, with a trace for the places under the cursor."""
+    nowhere = [None] * len(places)
+    figure.add_trace(go.Scatter3d(x=nowhere, y=nowhere, z=nowhere, **CURSOR))
+    style(figure, HEIGHT)
+    figure.update_layout(meta={"places": [*places], "cursor": len(figure.data) - 1})
     sides = {
         f"{place}axis": {
             "title": {"text": f"{escape(axis_label(axis))} in mm"},
@@ -162,8 +175,31 @@ def _space_figure(path: Path, axes: Sequence[str]) -> go.Figure:
         margin={"l": 0, "r": 0, "t": 0, "b": 0},
         scene={"aspectmode": "data", "camera": camera, **sides},
     )
-    _add_choice(figure, path, 0, "line", axes)
-    return figure
+
+
+def figures_of_runs(runs: Sequence[tuple[str, Recorded, str]], axes: Sequence[str]) -> list[go.Figure]:
+    """The actual paths of some recordings, by name and colour, in the plane and, with a third axis, in space."""
+    kinds = [go.Scatter, go.Scatter3d][: len(axes) - 1]
+    figures = [go.Figure() for _ in kinds]
+    for name, recorded, colour in runs:
+        path = _actual_path(recorded, axes)
+        for count, (kind, figure) in enumerate(zip(kinds, figures, strict=True), start=2):
+            places = "<br>".join(f"{escape(axis_label(axis))} %{{{at}:.3f}}" for axis, at in zip(axes[:count], "xyz"))
+            trace = kind(
+                **_coordinates(path.points, count, precise=True),
+                mode="lines",
+                name=name,
+                customdata=compact(path.time, precise=False),
+                line={"color": colour, "width": 1.6 if count == 2 else 3},
+                hovertemplate=f"{name}<br>{places}<br>%{{customdata:.3f}} s<extra></extra>",
+            )
+            figure.add_trace(trace)
+    for figure, dress in zip(figures, (style_plane, style_space), strict=False):
+        dress(figure, axes, range(len(runs)))
+        legend = {"x": 0.0, "y": 1.0, "xanchor": "left", "yanchor": "bottom", "orientation": "h"}
+        figure.update_layout(showlegend=True, legend=legend, margin={"t": 44})
+    figures[-1].update_traces(showlegend=False, selector={"name": "cursor"})
+    return figures
 
 
 PROGRAMMED: dict[str, Any] = {

@@ -29,32 +29,38 @@
 
   const inside = (axis, offset) => offset >= 0 && offset <= axis._length;
 
+  // the place of a trace at a time, null where it has none
+  function placeOf(plot, trace, time) {
+    const { x, y, z, customdata } = plot._fullData[trace];
+    const place = time === null ? null : between(customdata, time);
+    return place && [x, y, z || x].map((column) => at(column, place));
+  }
+
   function plane(plot, trace) {
     const mark = overlay(plot);
     mark.className = "cursor-place";
     return (time) => {
-      const { x, y, customdata } = plot._fullData[trace];
-      const place = time === null ? null : between(customdata, time);
+      const place = placeOf(plot, trace, time);
       const { xaxis, yaxis } = plot._fullLayout;
-      const [left, top] = place ? [xaxis.d2p(at(x, place)), yaxis.d2p(at(y, place))] : [-1, -1];
+      const [left, top] = place ? [xaxis.d2p(place[0]), yaxis.d2p(place[1])] : [-1, -1];
       mark.hidden = !inside(xaxis, left) || !inside(yaxis, top);
+      mark.style.background = plot._fullData[trace].line?.color || "";
       mark.style.left = xaxis._offset + left + "px";
       mark.style.top = yaxis._offset + top + "px";
     };
   }
 
-  // a point of its own; while Plotly draws it, only the last place waits
-  function space(plot, trace, cursor) {
+  // points of their own; while Plotly draws them, only the last time waits
+  function space(plot, traces, cursor) {
     let [busy, wanted] = [false, undefined];
     async function move() {
       if (busy || wanted === undefined) return;
-      const { x, y, z, customdata } = plot._fullData[trace];
-      const place = wanted === null ? null : between(customdata, wanted);
+      const places = traces.map((trace) => placeOf(plot, trace, wanted) || [null, null, null]);
       wanted = undefined;
       busy = true;
       try {
-        const [a, b, c] = [x, y, z].map((column) => [[place ? at(column, place) : null]]);
-        await Plotly.restyle(plot, { x: a, y: b, z: c }, [cursor]);
+        const [x, y, z] = [0, 1, 2].map((axis) => [places.map((place) => place[axis])]);
+        await Plotly.restyle(plot, { x, y, z }, [cursor]);
       } finally {
         busy = false;
         requestAnimationFrame(move);
@@ -89,7 +95,9 @@
   function follower(plot) {
     const meta = plot.layout.meta;
     if (meta.lengths) return length(plot, meta);
-    return "cursor" in meta ? space(plot, meta.places, meta.cursor) : plane(plot, meta.places);
+    if ("cursor" in meta) return space(plot, meta.places, meta.cursor);
+    const marks = meta.places.map((trace) => plane(plot, trace));
+    return (time) => marks.forEach((mark) => mark(time));
   }
 
   for (const plot of document.querySelectorAll(".js-plotly-plot")) {

@@ -152,6 +152,8 @@ def _add_lines(figure: go.Figure, recorded: Recorded, row: PlotRow, number: int,
 def colour_of(row: PlotRow, index: int) -> str:
     """Set and actual values have theirs; other lines of a row one each."""
     line = row.lines[index]
+    if line.colour:
+        return line.colour
     if line.role != OTHER:
         return SET_COLOUR if line.role == SET else ACTUAL_COLOUR
     if line.name == "following error":

@@ -151,9 +151,11 @@ def _reduce(recorded: Recorded, index: McapIndex, chunks: Collection[ChunkPlace]
     units: dict[str, _Unit] = {}
     for id in sorted(states):
         topic = index.channels[id].topic
-        unit = _Unit(recorded.topics[topic].type_name, stride, path_stride, recorded.block_cycles)
-        for rows in _batches(index, id, chunks, window):
-            unit.add(rows)
+        schema = index.schemas[index.channels[id].schema_id]
+        layout = fixed_layout(parse_schema(full_name(schema.name), schema.data.decode()))
+        unit = _Unit(recorded.topics[topic].type_name, layout, stride, path_stride, recorded.block_cycles)
+        for contents in _batches(index, id, layout.dtype.itemsize, chunks, window):
+            unit.add(contents)
         if unit.last_cycle >= 0:
             unit.finish()
             units[topic] = unit
@@ -172,25 +174,27 @@ def _reduce(recorded: Recorded, index: McapIndex, chunks: Collection[ChunkPlace]
 
 
 def _batches(
-    index: McapIndex, id: int, chunks: Collection[ChunkPlace], window: tuple[float, float]
-) -> Iterator[Records]:
+    index: McapIndex, id: int, size: int, chunks: Collection[ChunkPlace], window: tuple[float, float]
+) -> Iterator[list[Bytes]]:
     """The states of a unit in the order of the file; chunks are uncompressed while others are reduced."""
-    channel = index.channels[id]
-    schema = index.schemas[channel.schema_id]
-    layout = fixed_layout(parse_schema(full_name(schema.name), schema.data.decode()))
 
     def read(chunk: ChunkPlace) -> list[Bytes]:
-        return [_inside(run, window) for run in index.runs(chunk, {id})]
+        runs = [_inside(run, window) for run in index.runs(chunk, {id})]
+        for run in runs:
+            if run.shape[1] != size:
+                topic, kind = index.channels[id].topic, f"instead of {size}"
+                raise index.corrupt(chunk.offset, f"a message of {topic} has {run.shape[1]} bytes {kind}")
+        return [run for run in runs if len(run)]
 
     with ThreadPoolExecutor(max_workers=WORKERS) as workers:
         found: list[Bytes] = []
-        for chunk, runs in enumerate(ahead(workers, read, _with({id}, chunks)), start=1):
-            found += [run for run in runs if len(run)]
-            if found and chunk % BATCH == 0:
-                yield _records(index, layout, found)
+        for count, runs in enumerate(ahead(workers, read, _with({id}, chunks)), start=1):
+            found += runs
+            if found and count % BATCH == 0:
+                yield found
                 found = []
         if found:
-            yield _records(index, layout, found)
+            yield found
 
 
 def _inside(run: MessageRun, window: tuple[float, float]) -> Bytes:
@@ -199,19 +203,12 @@ def _inside(run: MessageRun, window: tuple[float, float]) -> Bytes:
     return run.contents if inside.all() else run.contents[inside]
 
 
-def _records(index: McapIndex, layout: Layout, contents: list[Bytes]) -> Records:
-    for content in contents:
-        if content.shape[1] != layout.dtype.itemsize:
-            size = layout.dtype.itemsize
-            raise index.corrupt(0, f"a state has {content.shape[1]} bytes instead of {size}")
-    return layout.read(np.concatenate(contents).reshape(-1))
-
-
 @dataclass(slots=True)
 class _Unit:
     """Reduces the states of a unit, batch by batch."""
 
     type_name: str
+    layout: Layout
     stride: int
     path_stride: int
     block_cycles: int
@@ -221,10 +218,28 @@ class _Unit:
     in_program: int = 0
     missing: int = 0
     last_cycle: int = -1
-    _rest: Records | None = None
+    _rest: list[Bytes] = field(default_factory=list)
+    """Too few for a pair."""
     _seen: int = 0
 
-    def add(self, rows: Records) -> None:
+    def add(self, contents: list[Bytes]) -> None:
+        whole = np.concatenate([*self._rest, *contents])
+        rows = self.layout.read(whole.reshape(-1))
+        before = sum(map(len, self._rest))
+        self._count(rows[before:])
+        used = len(rows) // (2 * self.stride) * 2 * self.stride
+        self._rest = [whole[used:].copy()]
+        if used:
+            self.states.append(extremes(rows[:used], FIELDS[self.type_name], self.stride))
+
+    def finish(self) -> None:
+        """What is left over is a pair of its own."""
+        rest = self.layout.read(np.concatenate(self._rest).reshape(-1))
+        if len(rest):
+            self.states.append(extremes(rest, FIELDS[self.type_name], (len(rest) + 1) // 2))
+
+    def _count(self, rows: Records) -> None:
+        """What is kept of every cycle, and places of the path."""
         cycles = rows["cycle"].astype(np.int64)
         before = cycles[0] - 1 if self.last_cycle < 0 else self.last_cycle
         gaps = np.maximum(np.diff(cycles, prepend=before) - 1, 0)
@@ -234,39 +249,31 @@ class _Unit:
             found = largest_error(rows)
             self.largest = max(self.largest, found, key=lambda each: inf if isnan(each[0]) else abs(each[0]))
             chosen = rows[-self._seen % self.path_stride :: self.path_stride]
-            self.places.append(chosen[[name for name in PATH_FIELDS if name in names_of(rows)]].copy())
+            self.places.append(picked(chosen, PATH_FIELDS))
         elif self.type_name == CHANNEL_STATE:
             self.in_program += int(np.isin(rows["state"], IN_PROGRAM).sum())
         self._seen += len(rows)
-        self._extremes(rows if self._rest is None else np.concatenate([self._rest, rows]))
-
-    def finish(self) -> None:
-        """What is left over is a pair of its own."""
-        if self._rest is not None and len(self._rest):
-            self.states.append(extremes(self._rest, FIELDS[self.type_name], (len(self._rest) + 1) // 2, 1))
-
-    def _extremes(self, rows: Records) -> None:
-        pairs = len(rows) // (2 * self.stride)
-        whole = pairs * 2 * self.stride
-        self._rest = rows[whole:].copy()
-        if pairs:
-            self.states.append(extremes(rows[:whole], FIELDS[self.type_name], self.stride, pairs))
 
 
-def names_of(rows: Records) -> tuple[str, ...]:
-    return rows.dtype.names or ()
+def picked(rows: Records, fields: Collection[str]) -> Records:
+    """Those fields that the states have, without what lies between them."""
+    known = [name for name in fields if name in (rows.dtype.names or ())]
+    result: Records = np.zeros(len(rows), dtype=[(name, rows.dtype[name]) for name in known])
+    for name in known:
+        result[name] = rows[name]
+    return result
 
 
-def extremes(rows: Records, fields: Collection[str], stride: int, pairs: int) -> Records:
-    """Two states for each of `pairs` equal parts of `rows`, `stride` cycles apart: smallest and largest value.
+def extremes(rows: Records, fields: Collection[str], stride: int) -> Records:
+    """Two states for each 2 · `stride` of `rows` (of what is left over, too): smallest and largest value.
 
     The larger one comes last if the part ends above its begin.
     """
-    known = [name for name in fields if name in names_of(rows)]
-    result: Records = np.zeros(2 * pairs, dtype=[("cycle", "<u8"), *((name, rows.dtype[name]) for name in known)])
+    pairs = max(1, len(rows) // (2 * stride))
+    result = picked(np.repeat(rows[:: -(-len(rows) // pairs)], 2), ("cycle", *fields))
     cycles = rows["cycle"].reshape(pairs, -1)
-    result["cycle"][::2], result["cycle"][1::2] = cycles[:, 0], cycles[:, min(stride, cycles.shape[1] - 1)]
-    for name in known:
+    result["cycle"][1::2] = cycles[:, min(stride, cycles.shape[1] - 1)]
+    for name in result.dtype.names[1:]:
         values = np.array(rows[name]).reshape(pairs, -1)
         low, high = values.min(axis=1), values.max(axis=1)
         rises = values[:, -1] >= values[:, 0]
