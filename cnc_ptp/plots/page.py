@@ -93,6 +93,8 @@ summary { cursor: pointer; font-weight: 600; }
   .card b { font-size: 18px; }
   table { font-size: 12.5px; }
   th, td { padding-right: 8px; }
+  td.text { min-width: 11em; }
+  .js-plotly-plot:not(#time) .modebar-container { display: none; }
 }
 @page { size: A4; margin: 12mm 10mm; }
 @media print {
@@ -101,7 +103,10 @@ summary { cursor: pointer; font-weight: 600; }
   header { padding: 0 0 8px; }
   main { padding: 8px 0 0; max-width: none; }
   section { border: 0; padding: 0; border-radius: 0; }
-  .card, .paths > div, tr, .paper > div { break-inside: avoid; }
+  .card, .js-plotly-plot, tr, .note { break-inside: avoid; }
+  .paper > div:not(:last-child) { break-after: page; }
+  section:has(> .paper), section:has(> .paths) ~ section:has(> .paths) { break-before: page; }
+  .paths { display: block; }
   h2, .note { break-after: avoid; }
   thead { display: table-header-group; }
   th { position: static; }

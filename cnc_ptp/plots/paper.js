@@ -4,8 +4,10 @@
   const page = window.page;
   if (!page) return;
   const WIDTH = 700; // pixels of A4 between its margins
-  const ROWS = 4;
-  const [ROW, GAP] = [150, 56];
+  const PATH_HEIGHT = 400;
+  const PAGE = 1020; // pixels of height
+  const HEADING = 170;
+  const [ROW, GAP, AROUND] = [140, 48, 70];
   const plot = page.plot;
   const paper = document.createElement("div");
   paper.className = "paper";
@@ -22,16 +24,32 @@
     }));
   }
 
+  function heightOf(row) {
+    const own = plot.layout;
+    const [low, high] = own["yaxis" + suffix(row)].domain;
+    return row === 1 ? (high - low) * (own.height - own.margin.t - own.margin.b) : ROW;
+  }
+
+  // first rows of the groups, and the row behind the last
+  function groups() {
+    const found = [1];
+    let height = AROUND + HEADING;
+    for (let row = 1; row <= rows; row++) {
+      height += heightOf(row) + GAP;
+      if (height <= PAGE || row === found[found.length - 1]) continue;
+      found.push(row);
+      height = AROUND + ROW + GAP;
+    }
+    return [...found, rows + 1];
+  }
+
   // rows of the plot as a figure of their own
   function group(first, behind) {
     const own = plot.layout;
     const heights = [];
-    for (let row = first; row < behind; row++) {
-      const [low, high] = own["yaxis" + suffix(row)].domain;
-      heights.push(row === 1 ? (high - low) * (own.height - own.margin.t - own.margin.b) : ROW);
-    }
+    for (let row = first; row < behind; row++) heights.push(heightOf(row));
     const inner = heights.reduce((sum, height) => sum + height + GAP, -GAP);
-    const layout = { width: WIDTH, height: inner + 70, margin: { l: 66, r: 8, t: 30, b: 40 }, showlegend: true };
+    const layout = { width: WIDTH, height: inner + AROUND, margin: { l: 66, r: 8, t: 30, b: 40 }, showlegend: true };
     for (const name of ["template", "font", "barmode", "bargap", "separators", "paper_bgcolor", "plot_bgcolor"]) layout[name] = own[name];
     layout.annotations = marks().map((mark) => mark.name);
     layout.shapes = [...(own.shapes || []), ...marks().map((mark) => mark.shape)];
@@ -59,17 +77,28 @@
 
   function before() {
     paper.textContent = "";
-    for (let first = 1; first <= rows; first += ROWS) {
+    const bounds = groups();
+    bounds.slice(1).forEach((behind, i) => {
       const box = paper.appendChild(document.createElement("div"));
-      const { data, layout } = group(first, Math.min(rows + 1, first + ROWS));
+      const { data, layout } = group(bounds[i], behind);
+      box.style.height = layout.height + "px";
       Plotly.newPlot(box, data, layout, { staticPlot: true });
+    });
+    for (const other of others()) {
+      const height = other.closest(".paths") ? PATH_HEIGHT : other.layout.height;
+      other.dataset.height ||= other.layout.height;
+      other.style.height = height + "px";
+      Plotly.relayout(other, { width: WIDTH, height, autosize: false });
     }
-    for (const other of others()) Plotly.relayout(other, { width: WIDTH, autosize: false });
   }
 
   function after() {
     paper.textContent = "";
-    for (const other of others()) Plotly.relayout(other, { width: null, autosize: true });
+    for (const other of others()) {
+      const height = Number(other.dataset.height);
+      other.style.height = height + "px";
+      Plotly.relayout(other, { width: null, height, autosize: true });
+    }
   }
 
   window.addEventListener("beforeprint", before);

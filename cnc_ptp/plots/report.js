@@ -352,6 +352,12 @@
   async function fit() {
     const narrow = plot.clientWidth < 600;
     const change = { "margin.l": narrow ? 66 : 86, "margin.r": narrow ? 8 : 24 };
+    change["margin.t"] = narrow ? 56 : 34; // the buttons stand over the title
+    for (const legend of Object.keys(plot.layout).filter((name) => /^legend\d/.test(name))) {
+      change[legend + ".yanchor"] = narrow ? "top" : "bottom"; // in the plot instead of beside its title
+      change[legend + ".font.size"] = narrow ? 9 : 12;
+      change[legend + ".bgcolor"] = narrow ? "rgba(255,255,255,0.7)" : "rgba(0,0,0,0)";
+    }
     if (window.matchMedia("(pointer: coarse)").matches) change.dragmode = false;
     if (plot.layout.margin.l !== change["margin.l"]) await Plotly.relayout(plot, change);
   }
