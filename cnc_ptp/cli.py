@@ -322,6 +322,21 @@ def report_command(**options: Any) -> None:
     sys.exit(report(**options))
 
 
+@main.command("layout")
+@MACHINE
+@click.option("--for", "program", type=click.Choice(("foxglove", "plotjuggler")), required=True, help="Program.")
+@click.option("-o", "--output", required=True, type=click.Path(dir_okay=False), help="File: .json, or .xml.")
+def layout_command(**options: Any) -> None:
+    """Write a layout of Foxglove or PlotJuggler for a machine.
+
+    It has a tab for each channel, axis and spindle, for threads and for circles, with the topics of recordings and of
+    the running machine.
+    """
+    from cnc_ptp.commands.look.layout import layout
+
+    sys.exit(layout(**options))
+
+
 @main.command("export")
 @click.argument("recording", type=click.Path())
 @click.option("--topic", required=True, help="Topic to write: /x/state, /events, /commands ...")
