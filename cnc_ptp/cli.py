@@ -107,6 +107,14 @@ def simulate_command(**options: Any) -> None:
 
 @main.command("run")
 @run_options
+@click.option(
+    "--foxglove",
+    type=click.IntRange(1, 65535),
+    is_flag=False,
+    flag_value=8765,
+    metavar="[PORT]",
+    help="Stream the messages of a recording to Foxglove at ws://localhost:PORT; without PORT 8765.",
+)
 @click.option("--free-run", is_flag=True, help="As fast as all nodes follow, instead of in real time.")
 @click.option("--composed", is_flag=True, help="All nodes in one process.")
 @namespace_option

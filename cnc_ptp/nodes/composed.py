@@ -50,9 +50,15 @@ def _run(
     if watched or options.stay:
         monitor.watch_units()
     recorder = None
-    if options.record:  # before the units: it takes each block first
-        machine_yaml = machine_text(options.machine)
-        recorder = RecorderNode(machine, options.record, machine_yaml, when=options.record_when, handover=handover)
+    if options.recorder:  # before the units: it takes each block first
+        recorder = RecorderNode(
+            machine,
+            options.record,
+            machine_text(options.machine),
+            when=options.record_when,
+            foxglove=options.foxglove,
+            handover=handover,
+        )
     clock = ClockNode(
         machine,
         wait_for=observers_of(options),

@@ -1,4 +1,7 @@
-"""`recorder MACHINE.yaml OUT.mcap`: records every block, event and command of the graph, and what the PLC writes."""
+"""`recorder MACHINE.yaml OUT.mcap`: records every block, event and command of the graph, and what the PLC writes.
+
+With `--foxglove PORT` it streams them, too.
+"""
 
 from __future__ import annotations
 
@@ -24,6 +27,7 @@ from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import convert, node_command_line, process
 from cnc_ptp.nodes.events import ROSOUT, EventPublisher
 from cnc_ptp.nodes.handover import Handover
+from cnc_ptp.nodes.live_stream import LiveServer, live_stream
 from cnc_ptp.nodes.observed_topics import observed_topics, type_name
 from cnc_ptp.nodes.polling_node import PollingNode, chain
 from cnc_ptp.nodes.topics import (
@@ -48,6 +52,7 @@ from cnc_ptp.recording.mcap_file import NOT_WRITTEN
 from cnc_ptp.recording.trigger import Condition, make_recording
 from cnc_ptp.recording.writer import NoRecording, Recording
 from cnc_ptp.wire.block_codec import head_of, with_plain_header
+from cnc_ptp.wire.stamps import Stamps
 from cnc_ptp.wire.ticks import Tick, decode_tick
 
 NOT_WRITABLE = 26113
@@ -72,15 +77,22 @@ class RecorderNode(PollingNode):
     def __init__(
         self,
         machine: MachineParameters,
-        path: str,
+        path: str | None,
         machine_yaml: str,
         *,
         when: str | None = None,
+        foxglove: int | None = None,
         handover: Handover | None = None,
     ) -> None:
-        """`when`: the condition with which it begins. `handover`: from the other nodes of this process."""
+        """`path`: None records nothing. `when`: the condition with which it begins. `foxglove`: port of a live stream.
+
+        `handover`: from the other nodes of this process.
+        """
         super().__init__(RECORDER, enable_rosout=False)
-        require_writable(path)
+        if path is not None:
+            require_writable(path)
+        self._server = None if foxglove is None else LiveServer(foxglove, "cnc_ptp")
+        self._live: Recording | NoRecording | None = None
         self._condition = None if when is None else Condition(when, unit_kinds(machine))
         self._machine_yaml = machine_yaml
         self._path = path
@@ -153,8 +165,8 @@ class RecorderNode(PollingNode):
         self._event_publisher.publish(convert.event_to_message(event, stamp))
 
     def destroy_node(self) -> None:
-        if self._recording is not None:
-            self._guarded(self._recording.close)()
+        for sink in self._sinks:
+            self._guarded(sink.close)()
         super().destroy_node()
 
     @property
@@ -179,13 +191,28 @@ class RecorderNode(PollingNode):
             self._free_run = not message.scheduled_monotonic_ns
             if not self._free_run:
                 process.take_priority()
-            self._recording = make_recording(self._path, self._machine_yaml, start_ns, self._cycle_ns, self._condition)
+            self._begin(start_ns)
             for record in self._early:
                 record()
             self._early.clear()
         self._last_tick = message.first_cycle
         if message.count:
-            self._recording.tick(CycleTick(message.first_cycle, message.count), message.scheduled_monotonic_ns)
+            tick = CycleTick(message.first_cycle, message.count)
+            for sink in self._sinks:
+                sink.tick(tick, message.scheduled_monotonic_ns)
+
+    def _begin(self, start_ns: int) -> None:
+        if self._server is not None:
+            self._live = live_stream(self._server, start_ns, self._cycle_ns)
+        if self._path is None:
+            self._recording = NoRecording(Stamps(start_ns, self._cycle_ns))
+        else:
+            self._recording = make_recording(self._path, self._machine_yaml, start_ns, self._cycle_ns, self._condition)
+
+    @property
+    def _sinks(self) -> list[Recording | NoRecording]:
+        """The recording and the live stream, since the first tick."""
+        return [sink for sink in (self._live, self._recording) if sink is not None]
 
     def _on_block(self, unit: str, block_class: type, data: bytes) -> None:
         self._heard = time.monotonic()
@@ -195,13 +222,14 @@ class RecorderNode(PollingNode):
         data = with_plain_header(block_class, data, self._recording.stamps)
         stamp_ns, first_cycle, count = head_of(data)
         if self._is_new(unit, stamp_ns, first_cycle, count):
-            self._recording.encoded_block(unit, block_class, data)
+            for sink in self._sinks:
+                sink.encoded_block(unit, block_class, data)
 
     def _take_block(self, unit: str, block: CycleBlock) -> None:
         """Of a node of this process; now, because the commands in it get more arguments on their way."""
         self._heard = time.monotonic()
-        if self._recording is not None:  # None: it could not be opened, and the node fails
-            self._recording.block(unit, block, handshakes=False)
+        for sink in self._sinks:  # none: the file could not be opened, and the node fails
+            sink.block(unit, block, handshakes=False)
 
     def _is_new(self, unit: str, stamp_ns: int, cycle: int, count: int) -> bool:
         """False for a block that is recorded already; an event when earlier blocks are missing."""
@@ -214,49 +242,47 @@ class RecorderNode(PollingNode):
         return bool(cycle >= expected)
 
     def _on_event(self, message: msg.Event) -> None:
-        self._single(lambda: self._recorded.event(convert.message_to_event(message)))
+        event = convert.message_to_event(message)
+        self._single(lambda sink: sink.event(event))
 
     def _on_command(self, message: msg.CommandRecord) -> None:
-        self._single(lambda: self._recorded.command(convert.message_to_record(message)))
+        command = convert.message_to_record(message)
+        self._single(lambda sink: sink.command(command))
 
     def _on_stamped(self, topic: str, message_type: Any, data: bytes) -> None:
         """A message with a header that is recorded as it came."""
         stamp_ns = convert.nanoseconds(deserialize_message(data, message_type).header.stamp)
-        self._single(lambda: self._recorded.raw(recorded_topic(topic), type_name(message_type), data, stamp_ns))
+        self._single(lambda sink: sink.raw(recorded_topic(topic), type_name(message_type), data, stamp_ns))
 
     def _on_observed(self, topic: str, type_name: str, data: bytes) -> None:
         """A PLC may continue to publish when the run has ended, so this does not count as a message of the run."""
         stamp_ns = self._tick_ns if self._free_run else time.time_ns()
-        self._keep(lambda: self._recorded.raw(topic, type_name, data, stamp_ns))
+        self._keep(lambda sink: sink.raw(topic, type_name, data, stamp_ns))
 
     def _on_log(self, data: bytes) -> None:
         """The topic is one for all namespaces; messages of nodes of other namespaces are left out."""
         if _namespace(deserialize_message(data, Log).name) == _namespace(self.get_logger().name):
             self._on_observed(ROSOUT, type_name(Log), data)
 
-    def _single(self, record: Any) -> None:
+    def _single(self, record: Callable[[Recording | NoRecording], None]) -> None:
         self._heard = time.monotonic()
         self._keep(record)
 
-    def _keep(self, record: Any) -> None:
+    def _keep(self, record: Callable[[Recording | NoRecording], None]) -> None:
         """Records it, or keeps it until the first tick has come."""
         if self._recording is None:
-            self._early.append(record)
-        else:
-            record()
-
-    @property
-    def _recorded(self) -> Recording | NoRecording:
-        assert self._recording is not None
-        return self._recording
+            self._early.append(lambda: self._keep(record))
+            return
+        for sink in self._sinks:
+            record(sink)
 
     def _look(self) -> None:
         """Takes the ticks and blocks that have come, and writes when it is time."""
         self.take_polled()
         if self._free_run and self._handover is None:
             self._report(self._last_tick)
-        if self._recording is not None:
-            self._recording.flush_if_due(time.monotonic())
+        for sink in self._sinks:
+            sink.flush_if_due(time.monotonic())
 
 
 def require_writable(path: str) -> None:
@@ -280,13 +306,14 @@ def _namespace(logger: str) -> str:
 
 @click.command()
 @node_command_line.MACHINE
-@click.argument("output", type=click.Path(dir_okay=False))
+@click.argument("output", type=click.Path(dir_okay=False), required=False)
 @click.option("--when", help="Begin when a field has this value: 'x.set_velocity != 0'.")
-def command(machine: str, output: str, when: str | None) -> None:
-    """Records the graph of MACHINE to the MCAP file OUTPUT."""
+@click.option("--foxglove", type=int, help="Port of a live stream for Foxglove.")
+def command(machine: str, output: str | None, when: str | None, foxglove: int | None) -> None:
+    """Records the graph of MACHINE to the MCAP file OUTPUT, without it only streams."""
 
     def make() -> RecorderNode:
-        return RecorderNode(read_machine(machine), output, machine_text(machine), when=when)
+        return RecorderNode(read_machine(machine), output, machine_text(machine), when=when, foxglove=foxglove)
 
     sys.exit(process.run_node(make, name=RECORDER, settled=lambda node: node.settled))
 

@@ -32,6 +32,7 @@ from cnc_ptp.nodes.forked import (
     wait_for,
 )
 from cnc_ptp.nodes.monitor import SUPERVISOR, RunMonitor
+from cnc_ptp.nodes.live_stream import require_foxglove
 from cnc_ptp.nodes.recorder import require_writable
 from cnc_ptp.nodes.topics import MONITOR, RECORDER
 from cnc_ptp.nodes.unit.claim import require_free
@@ -79,6 +80,13 @@ class RunOptions:
     """A PLC in a file."""
     record_when: str | None = None
     """The condition with which the recording begins; without it with the run."""
+    foxglove: int | None = None
+    """Port of a live stream for Foxglove."""
+
+    @property
+    def recorder(self) -> bool:
+        """A node records or streams."""
+        return self.record is not None or self.foxglove is not None
 
 
 class Supervisor:
@@ -289,14 +297,16 @@ def command_lines(
 ) -> Iterator[tuple[str, list[str]]]:
     """Name and command line (executable first) of every node of a run; the clock waits for `observers` as well."""
     free_run = ["--free-run"] if options.free_run else []
-    units = ["--recorders", "1"] if options.record else []
+    units = ["--recorders", "1"] if options.recorder else []
     units = [*units, "--state-rate", str(options.state_rate)] if options.state_rate is not None else units
     program = ["--program", options.program] if options.program else []
     program += ["--dialect", options.dialect] if options.program and options.dialect else []
     begin = [*start_words(options.begin)]
-    if options.record:
+    if options.recorder:
+        file = [options.record] if options.record else []
         when = ["--when", options.record_when] if options.record_when else []
-        yield RECORDER, ["recorder", options.machine, options.record, *when]
+        live = ["--foxglove", str(options.foxglove)] if options.foxglove is not None else []
+        yield RECORDER, ["recorder", options.machine, *file, *when, *live]
     for name, kind in unit_kinds(machine).items():
         if kind != "plc":
             first = program if options.begin is None and name == next(iter(machine.channels), None) else []
@@ -317,13 +327,15 @@ def command_lines(
 def only_run(options: RunOptions) -> Iterator[None]:
     """ROS with its domain for this run alone; only then is the recording opened.
 
-    Raises CncError 26107, 26108 (process) and 26113 (recorder).
+    Raises CncError 26107, 26108 (process), 26113 (recorder), 26183 and 26184 (live stream).
     """
     process.initialise()
     try:
         with process.claim_domain():
             if options.record is not None:
                 require_writable(options.record)
+            if options.foxglove is not None:
+                require_foxglove(options.foxglove)
             yield
     finally:
         rclpy.try_shutdown()
@@ -331,7 +343,7 @@ def only_run(options: RunOptions) -> Iterator[None]:
 
 def observers_of(options: RunOptions) -> list[str]:
     """Nodes besides the units that the clock waits for."""
-    return [MONITOR, *([RECORDER] if options.record else [])]
+    return [MONITOR, *([RECORDER] if options.recorder else [])]
 
 
 def how_ended(status: int) -> str:

@@ -130,6 +130,20 @@ class _Unit:
             topic.add(encoder, data)
 
 
+class MessageFile(Protocol):
+    """What a recording needs of its file; see McapFile."""
+
+    @property
+    def chunks_ready(self) -> bool: ...
+    def attachment(self, name: str, media_type: str, data: bytes, log_time: int) -> None: ...
+    def metadata(self, name: str, values: dict[str, str]) -> None: ...
+    def channel(self, topic: str, type_name: str, schema_text: str, metadata: dict[str, str]) -> int: ...
+    def messages(self, channel_id: int, rows: Bytes, times: Times) -> None: ...
+    def close_chunk(self) -> None: ...
+    def finish_chunks(self) -> None: ...
+    def close(self) -> None: ...
+
+
 class Recording:
     """A recording being written.
 
@@ -154,8 +168,9 @@ class Recording:
         flush_seconds: float = 0.5,
         level: int = 1,
         notes: Mapping[str, str] = NO_NOTES,
+        file: MessageFile | None = None,
     ) -> None:
-        """`notes` for its metadata."""
+        """`notes` for its metadata; `file`: what takes the messages instead of an MCAP file."""
         self.path = Path(path)
         self.stamps = Stamps(start_ns, cycle_time_ns)
         self._chunk_cycles = max(1, round(chunk_seconds * 1e9 / cycle_time_ns))
@@ -165,7 +180,7 @@ class Recording:
         self._topics: dict[str, _Topic] = {}
         self._units: dict[tuple[str, type], _Unit] = {}
         self._closed = False
-        self._file = McapFile(self.path, level)
+        self._file = McapFile(self.path, level) if file is None else file
         self.attachment(MACHINE_FILE, "application/yaml", machine_yaml)
         times = {"start_ns": str(start_ns), "cycle_time_ns": str(cycle_time_ns)}
         self._file.metadata(METADATA, {**times, **notes})

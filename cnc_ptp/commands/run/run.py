@@ -37,6 +37,7 @@ def run(
     begin: StartPoint | None = None,
     plc: str | None = None,
     record_when: str | None = None,
+    foxglove: int | None = None,
 ) -> int:
     """Runs the graph; prints a summary. Status 1 when a unit ended in error, a node died or the disk was full.
 
@@ -51,7 +52,19 @@ def run(
     if record_when is not None:
         Condition(record_when, unit_kinds(parameters))
     options = RunOptions(
-        machine, program, scenario, duration, record, free_run, stay, state_rate, dialect, begin, plc, record_when
+        machine=machine,
+        program=program,
+        scenario=scenario,
+        duration=duration,
+        record=record,
+        free_run=free_run,
+        stay=stay,
+        state_rate=state_rate,
+        dialect=dialect,
+        begin=begin,
+        plc=plc,
+        record_when=record_when,
+        foxglove=foxglove,
     )
     with RunProgress() as progress:
 
