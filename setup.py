@@ -198,7 +198,10 @@ setup(
         share("examples/lists", "examples/lists/*.lis"),
     ],
     python_requires=">=3.11,<3.14",
-    extras_require={"data": ["pandas>=2.2,<4", "pyarrow>=18"]},  # tables and Parquet of recordings
+    extras_require={
+        "data": ["pandas>=2.2,<4", "pyarrow>=18"],  # tables and Parquet of recordings
+        "foxglove": ["foxglove-sdk>=0.30,<0.31"],  # live stream
+    },
     entry_points={"console_scripts": console_scripts()},
     zip_safe=False,
 )
