@@ -33,7 +33,9 @@ def require_foxglove(port: int) -> None:
     """Raises CncError 26183 without the SDK, 26184 for a port that cannot be had."""
     if importlib.util.find_spec("foxglove") is None:
         raise CncError(
-            NO_SDK, "--foxglove: foxglove-sdk is not installed", f"{NOTHING}, install it with: pip install 'cnc_ptp[foxglove]'"
+            NO_SDK,
+            "--foxglove: foxglove-sdk is not installed",
+            f"{NOTHING}, install it with: pip install 'cnc_ptp[foxglove]'",
         )
     with socket.socket() as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

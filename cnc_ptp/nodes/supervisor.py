@@ -31,8 +31,8 @@ from cnc_ptp.nodes.forked import (
     start_server,
     wait_for,
 )
-from cnc_ptp.nodes.monitor import SUPERVISOR, RunMonitor
 from cnc_ptp.nodes.live_stream import require_foxglove
+from cnc_ptp.nodes.monitor import SUPERVISOR, RunMonitor
 from cnc_ptp.nodes.recorder import require_writable
 from cnc_ptp.nodes.topics import MONITOR, RECORDER
 from cnc_ptp.nodes.unit.claim import require_free

@@ -98,7 +98,11 @@ def _cards(pair: Sequence[Recorded], found: Sequence[FieldDifference]) -> Iterat
     parted = [each.parted for each in found if each.field.startswith("set_") and each.parted >= 0]
     apart = f"{min(parted) * pair[0].cycle_time_ns * 1e-9:.3f} s" if parted else "never"
     yield "set values part at", apart, False
-    for label, key in (("errors of A / B", "errors"), ("warnings of A / B", "warnings"), ("commands of A / B", "commands")):
+    for label, key in (
+        ("errors of A / B", "errors"),
+        ("warnings of A / B", "warnings"),
+        ("commands of A / B", "commands"),
+    ):
         yield label, f"{figures[0][key]} / {figures[1][key]}", False
 
 
@@ -157,16 +161,18 @@ def compared_rows(pair: Sequence[Recorded], units: dict[str, str]) -> Iterator[P
         {(row.unit, row.title): row for row in time_rows(recorded, units, torque_units(recorded))} for recorded in pair
     )
     for key in dict.fromkeys([*first, *second]):
-        rows = [row for row in (first.get(key), second.get(key))]
-        known = next(row for row in rows if row is not None)
+        one, other = first.get(key), second.get(key)
+        known = one or other
+        assert known is not None
         lines = [
             replace(line, name=f"{letter} {line.name}", role=OTHER, colour=_colour(row, index, which))
-            for which, (letter, row) in enumerate(zip(LETTERS, rows, strict=True))
-            for index, line in enumerate(row.lines if row is not None else [])
+            for which, (letter, row) in enumerate(zip(LETTERS, (one, other), strict=True))
+            if row is not None
+            for index, line in enumerate(row.lines)
         ]
         yield replace(known, lines=lines, legend=True)
-        if known.title in WITH_DIFFERENCE and None not in rows:
-            yield from _difference_row(*rows)
+        if known.title in WITH_DIFFERENCE and one is not None and other is not None:
+            yield from _difference_row(one, other)
 
 
 def _colour(row: PlotRow, index: int, which: int) -> str:
@@ -200,8 +206,8 @@ def _parameters(pair: Sequence[Recorded]) -> str:
 
 def _programs(pair: Sequence[Recorded]) -> str:
     """Lines of the programs that differ; nothing where they are equal."""
-    texts = [_program(recorded) for recorded in pair]
-    lines = list(difflib.unified_diff(*(text.splitlines() for text in texts), *LETTERS, lineterm="", n=2))
+    one, other = (_program(recorded).splitlines() for recorded in pair)
+    lines = list(difflib.unified_diff(one, other, *LETTERS, lineterm="", n=2))
     return section("Program", f"<pre>{escape(chr(10).join(lines))}</pre>") if lines else ""
 
 

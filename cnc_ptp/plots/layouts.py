@@ -182,7 +182,10 @@ def _foxglove_panel(plot: Plot) -> dict[str, Any]:
     panel |= {"showXAxisLabels": True, "showYAxisLabels": True, "xAxisVal": "timestamp"}
     if plot.x is not None:
         value = f"{plot.x.topic}.{plot.x.name}"
-        panel |= {"xAxisVal": "custom", "xAxisPath": {"value": value, "enabled": True, "timestampMethod": "receiveTime"}}
+        panel |= {
+            "xAxisVal": "custom",
+            "xAxisPath": {"value": value, "enabled": True, "timestampMethod": "receiveTime"},
+        }
     return panel
 
 
@@ -201,7 +204,7 @@ def _split(names: Sequence[str], direction: str) -> Any:
 def plotjuggler(machine: MachineParameters) -> str:
     """A layout as PlotJuggler loads it (XML): a tab for each view."""
     root = ElementTree.Element("root")
-    tabs = ElementTree.SubElement(root, "tabbed_widget", name="Main Window", parent="main_window")
+    tabs = ElementTree.SubElement(root, "tabbed_widget", {"name": "Main Window", "parent": "main_window"})
     for view in views(machine):
         tab = ElementTree.SubElement(tabs, "Tab", tab_name=view.title, containers="1")
         container = ElementTree.SubElement(tab, "Container")
@@ -225,9 +228,7 @@ def _add_curve(plot: ElementTree.Element, field: Field, x: Field | None, colour:
         ElementTree.SubElement(plot, "curve", name=name, color=colour)
         return
     other = f"{x.topic}/{x.name}"
-    ElementTree.SubElement(
-        plot, "curve", name=f"{field.label} of {x.label}", color=colour, curve_x=other, curve_y=name
-    )
+    ElementTree.SubElement(plot, "curve", name=f"{field.label} of {x.label}", color=colour, curve_x=other, curve_y=name)
 
 
 FORMATS = {"foxglove": (foxglove, ".json"), "plotjuggler": (plotjuggler, ".xml")}

@@ -72,7 +72,9 @@ def actual_path_figures(recorded: Recorded, units: Mapping[str, str]) -> list[go
 
 
 def _actual_path(recorded: Recorded, axes: Sequence[str]) -> Path:
-    states = [(recorded.of_type(AXIS_STATE) if recorded.reduced is None else recorded.reduced.paths)[name] for name in axes]
+    states = [
+        (recorded.of_type(AXIS_STATE) if recorded.reduced is None else recorded.reduced.paths)[name] for name in axes
+    ]
     length = min(len(rows) for rows in states)
     columns = [rows["actual_position"][:length] for rows in states]
     chosen = path_points(columns)
@@ -184,7 +186,9 @@ def figures_of_runs(runs: Sequence[tuple[str, Recorded, str]], axes: Sequence[st
     for name, recorded, colour in runs:
         path = _actual_path(recorded, axes)
         for count, (kind, figure) in enumerate(zip(kinds, figures, strict=True), start=2):
-            places = "<br>".join(f"{escape(axis_label(axis))} %{{{at}:.3f}}" for axis, at in zip(axes[:count], "xyz"))
+            places = "<br>".join(
+                f"{escape(axis_label(axis))} %{{{at}:.3f}}" for axis, at in zip(axes[:count], "xyz", strict=False)
+            )
             trace = kind(
                 **_coordinates(path.points, count, precise=True),
                 mode="lines",

@@ -33,7 +33,6 @@ from cnc_ptp.recording.reader import SPINDLE_STATE, Recorded
 from cnc_ptp.recording.rows import PlotRow, standing, time_rows
 from cnc_ptp.recording.statistics import in_machine_order, last_diagnostics, summary, torque_units
 
-
 OF_EVERY_CYCLE = (recorded_program, surface_sections, thread_sections)
 """Sections that a long recording does not get."""
 
@@ -113,7 +112,11 @@ def _paths(figures: list[go.Figure]) -> str:
         return ""
     plots = "".join(f"<div>{plot_div(figure, f'path{number}')}</div>" for number, figure in enumerate(figures))
     style = "paths two" if len(figures) > 1 else "paths"
-    return section("Path", f'<div class="{style}">{plots}</div>', "Actual position, coloured by the actual feed or by the following error of its axes together.")
+    return section(
+        "Path",
+        f'<div class="{style}">{plots}</div>',
+        "Actual position, coloured by the actual feed or by the following error of its axes together.",
+    )
 
 
 def _times(recorded: Recorded, units: dict[str, str]) -> str:

@@ -123,7 +123,12 @@ def time_columns(recorded: Recorded, rows: Iterable[PlotRow]) -> dict[str, Any]:
             place = cycles[id(line.rows)] = len(packed_cycles)
             packed_cycles.append(packed(line.rows["cycle"]))
         values.append({"cycles": place, "factor": line.factor, "values": packed(line.rows[line.field])})
-    return {"cycle_time": recorded.cycle_time_ns * 1e-9, "stride": recorded.stride, "cycles": packed_cycles, "lines": values}
+    return {
+        "cycle_time": recorded.cycle_time_ns * 1e-9,
+        "stride": recorded.stride,
+        "cycles": packed_cycles,
+        "lines": values,
+    }
 
 
 def _add_lines(figure: go.Figure, recorded: Recorded, row: PlotRow, number: int, serial: int) -> None:

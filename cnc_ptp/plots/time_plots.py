@@ -13,7 +13,9 @@ from cnc_ptp.plots.report_figures import legend_entries, rows_figure, time_colum
 from cnc_ptp.recording.reader import Recorded
 from cnc_ptp.recording.rows import PlotRow
 
-SCRIPTS = [Path(__file__).with_name(name).read_text(encoding="utf-8") for name in ("report.js", "places.js", "paper.js")]
+SCRIPTS = [
+    Path(__file__).with_name(name).read_text(encoding="utf-8") for name in ("report.js", "places.js", "paper.js")
+]
 HINT = (
     "Drag sideways to zoom all plots, double click for the whole run; the scales follow. The cursor shows the values "
     "of a cycle, and its place on the paths; a place under the cursor on a path is a time here. Click for a first "

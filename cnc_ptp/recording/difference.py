@@ -46,7 +46,7 @@ class FieldDifference:
 
 
 def aligned(first: Recorded, second: Recorded, align: str = PROGRAM) -> tuple[Recorded, Recorded]:
-    """Both with the starts of their programs (or their own ones) in the same cycle: the one that starts first is shifted.
+    """Both with the starts of their programs (or their own ones) in the same cycle; the earlier one is shifted.
 
     Raises CncError 26181 for a recording that is too long, 26182 for recordings that have nothing in common.
     """
@@ -117,10 +117,10 @@ def _difference(unit: str, field: str, first: Records, second: Records) -> Field
     change = np.abs(second[field] - first[field])
     place = int(np.nan_to_num(change, nan=np.inf).argmax())
     apart = np.flatnonzero(first[field] != second[field])
-    sizes = [float(np.abs(rows[field]).max()) for rows in (first, second)]
+    one, other = (float(np.abs(rows[field]).max()) for rows in (first, second))
     cycles = first["cycle"]
     parted = int(cycles[apart[0]]) if len(apart) else -1
-    return FieldDifference(unit, field, *sizes, float(change[place]), int(cycles[place]), parted)
+    return FieldDifference(unit, field, one, other, float(change[place]), int(cycles[place]), parted)
 
 
 def measure_of(difference: FieldDifference, units: dict[str, str]) -> str:
@@ -139,13 +139,14 @@ def parameter_differences(first: Recorded, second: Recorded) -> list[tuple[str, 
 def _yaml(text: str) -> Any:
     try:
         return yaml_text.load(text)
-    except Exception:  # noqa: BLE001  (a recording without a readable machine file has no parameters)
+    except Exception:
         return {}
 
 
 def _flat(name: str, value: Any) -> Iterator[tuple[str, Any]]:
     if isinstance(value, dict):
         for key, inner in value.items():
-            yield from _flat(f"{name}.{key}".lstrip(".").replace(".ros__parameters", ""), inner)
+            part = "" if key == "ros__parameters" else f".{str(key).removeprefix('/')}"
+            yield from _flat(f"{name}{part}".removeprefix("."), inner)
     else:
         yield name, value

@@ -51,16 +51,35 @@ BATCH = 40
 SPARSE = (EVENT, COMMAND, DIAGNOSTICS, OFFSETS, TICK)
 PATH_FIELDS = ("cycle", "set_position", "actual_position", "actual_velocity", "following_error")
 FIELDS = {
-    AXIS_STATE: (
-        "set_position set_velocity set_acceleration set_jerk actual_position actual_velocity following_error "
-        "feedforward_velocity additive_velocity additive_torque friction_current actual_torque override_percent "
-        "feedforward_percent state"
-    ).split(),
-    SPINDLE_STATE: (
-        "set_speed_rpm actual_speed_rpm set_position_deg actual_position_deg target_position_deg following_error_deg "
-        "override_percent feedforward_percent state"
-    ).split(),
-    CHANNEL_STATE: "line path_velocity programmed_feed override_percent state".split(),
+    AXIS_STATE: [
+        "set_position",
+        "set_velocity",
+        "set_acceleration",
+        "set_jerk",
+        "actual_position",
+        "actual_velocity",
+        "following_error",
+        "feedforward_velocity",
+        "additive_velocity",
+        "additive_torque",
+        "friction_current",
+        "actual_torque",
+        "override_percent",
+        "feedforward_percent",
+        "state",
+    ],
+    SPINDLE_STATE: [
+        "set_speed_rpm",
+        "actual_speed_rpm",
+        "set_position_deg",
+        "actual_position_deg",
+        "target_position_deg",
+        "following_error_deg",
+        "override_percent",
+        "feedforward_percent",
+        "state",
+    ],
+    CHANNEL_STATE: ["line", "path_velocity", "programmed_feed", "override_percent", "state"],
 }
 """What a report draws of them over time."""
 NOT_CLOSED = "the file was not closed; what was recorded after its last whole chunk is missing"
@@ -74,7 +93,7 @@ def read_for_report(
     Events, commands and attachments are those of the whole file. Raises CncError 26001 to 26005.
     """
     path = Path(path)
-    if not path.is_file() or path.stat().st_size < SMALL and most_states == MOST_STATES:
+    if not path.is_file() or (path.stat().st_size < SMALL and most_states == MOST_STATES):
         return read_recording(path)
     index = McapIndex(path)
     try:
@@ -273,7 +292,9 @@ def extremes(rows: Records, fields: Collection[str], stride: int) -> Records:
     result = picked(np.repeat(rows[:: -(-len(rows) // pairs)], 2), ("cycle", *fields))
     cycles = rows["cycle"].reshape(pairs, -1)
     result["cycle"][1::2] = cycles[:, min(stride, cycles.shape[1] - 1)]
-    for name in result.dtype.names[1:]:
+    for name in result.dtype.fields or ():
+        if name == "cycle":
+            continue
         values = np.array(rows[name]).reshape(pairs, -1)
         low, high = values.min(axis=1), values.max(axis=1)
         rises = values[:, -1] >= values[:, 0]
