@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import yaml
 
 from cnc_ptp import yaml_text
 from cnc_ptp.errors import CncError
@@ -139,7 +140,7 @@ def parameter_differences(first: Recorded, second: Recorded) -> list[tuple[str, 
 def _yaml(text: str) -> Any:
     try:
         return yaml_text.load(text)
-    except Exception:
+    except yaml.YAMLError:
         return {}
 
 
