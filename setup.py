@@ -17,8 +17,8 @@ from setuptools.command.build_ext import build_ext
 PACKAGE = "cnc_ptp"
 ROOT = Path(__file__).parent.resolve()
 COMMANDS = (
-    "simulate", "run", "status", "jog", "check", "explain", "format", "replay", "report", "plot", "layout", "params",
-    "identify", "circle", "curve", "lists",
+    "simulate", "run", "status", "jog", "check", "explain", "format", "replay", "report", "plot", "layout", "recover",
+    "params", "identify", "circle", "curve", "lists",
 )  # fmt: skip
 """Executables of their own. Not `do` and `export`, words of the shell, nor `watch` and `init`, which Linux has."""
 NODES = ("nc_channel", "axis", "spindle", "plc_bridge", "clock", "recorder", "player")
