@@ -18,8 +18,8 @@ from cnc_ptp.recording.writer import Recording
 from cnc_ptp.wire.layout import Bytes
 from cnc_ptp.wire.stamps import Times
 
-NO_SDK = 26183
-NO_PORT = 26184
+NO_SDK = 26023
+NO_PORT = 26024
 HOST = "127.0.0.1"
 """This computer alone: the stream has no password."""
 DEFAULT_PORT = 8765
@@ -30,7 +30,7 @@ NOTHING = "nothing was started"
 
 
 def require_foxglove(port: int) -> None:
-    """Raises CncError 26183 without the SDK, 26184 for a port that cannot be had."""
+    """Raises CncError 26023 without the SDK, 26024 for a port that cannot be had."""
     if importlib.util.find_spec("foxglove") is None:
         raise CncError(
             NO_SDK,
@@ -57,7 +57,7 @@ class LiveServer:
     chunks_ready = False
 
     def __init__(self, port: int, name: str) -> None:
-        """Raises CncError 26183 and 26184."""
+        """Raises CncError 26023 and 26024."""
         require_foxglove(port)
         import foxglove
 

@@ -327,7 +327,7 @@ def command_lines(
 def only_run(options: RunOptions) -> Iterator[None]:
     """ROS with its domain for this run alone; only then is the recording opened.
 
-    Raises CncError 26107, 26108 (process), 26113 (recorder), 26183 and 26184 (live stream).
+    Raises CncError 26107, 26108 (process), 26113 (recorder), 26023 and 26024 (live stream).
     """
     process.initialise()
     try:

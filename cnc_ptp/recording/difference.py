@@ -16,8 +16,8 @@ from cnc_ptp.recording.statistics import IN_PROGRAM
 from cnc_ptp.recording.units import unit_of
 from cnc_ptp.wire.layout import Records
 
-TOO_LONG = 26181
-NOT_COMPARABLE = 26182
+TOO_LONG = 26021
+NOT_COMPARABLE = 26022
 NOTHING = "nothing was drawn"
 PROGRAM, START = "program", "start"
 """What lies on each other: the starts of the programs, or of the recordings."""
@@ -49,7 +49,7 @@ class FieldDifference:
 def aligned(first: Recorded, second: Recorded, align: str = PROGRAM) -> tuple[Recorded, Recorded]:
     """Both with the starts of their programs (or their own ones) in the same cycle; the earlier one is shifted.
 
-    Raises CncError 26181 for a recording that is too long, 26182 for recordings that have nothing in common.
+    Raises CncError 26021 for a recording that is too long, 26022 for recordings that have nothing in common.
     """
     for recorded in (first, second):
         if recorded.reduced is not None:

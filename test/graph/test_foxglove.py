@@ -114,7 +114,7 @@ def test_a_port_that_is_taken(port):
         with pytest.raises(CncError) as caught:
             LiveServer(port, "machine")
     assert str(caught.value) == (
-        f"P-ERR-26184 --foxglove: port {port}: another program listens there; nothing was started, "
+        f"P-ERR-26024 --foxglove: port {port}: another program listens there; nothing was started, "
         "give another one: --foxglove PORT"
     )
 
@@ -124,7 +124,7 @@ def test_a_server_that_does_not_start(port, monkeypatch):
         raise RuntimeError("no runtime")
 
     monkeypatch.setattr(foxglove, "start_server", fails)
-    with pytest.raises(CncError, match=f"P-ERR-26184 --foxglove: port {port}: no runtime; nothing was started"):
+    with pytest.raises(CncError, match=f"P-ERR-26024 --foxglove: port {port}: no runtime; nothing was started"):
         LiveServer(port, "machine")
 
 
@@ -133,7 +133,7 @@ def test_without_the_package(port, monkeypatch):
     with pytest.raises(CncError) as caught:
         require_foxglove(port)
     assert str(caught.value) == (
-        "P-ERR-26183 --foxglove: foxglove-sdk is not installed; nothing was started, install it with: "
+        "P-ERR-26023 --foxglove: foxglove-sdk is not installed; nothing was started, install it with: "
         "pip install 'cnc_ptp[foxglove]'"
     )
 

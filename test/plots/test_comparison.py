@@ -131,7 +131,7 @@ def test_units_in_common_are_needed(first, second):
     with pytest.raises(CncError) as caught:
         aligned(first, second)
     assert str(caught.value) == (
-        f"P-ERR-26182 recordings {first.path} and {second.path}: have no unit in common; nothing was drawn"
+        f"P-ERR-26022 recordings {first.path} and {second.path}: have no unit in common; nothing was drawn"
     )
 
 
@@ -140,7 +140,7 @@ def test_one_cycle_time_is_needed(first, second):
     with pytest.raises(CncError) as caught:
         comparison_page(first, second)
     assert str(caught.value) == (
-        f"P-ERR-26182 recordings {first.path} and {second.path}: cycle times of 1 ms and 2 ms; nothing was drawn"
+        f"P-ERR-26022 recordings {first.path} and {second.path}: cycle times of 1 ms and 2 ms; nothing was drawn"
     )
 
 
@@ -148,7 +148,7 @@ def test_a_recording_that_is_too_long(first, path):
     with pytest.raises(CncError) as caught:
         aligned(first, read_for_report(path, most_states=100))
     assert str(caught.value) == (
-        f"P-ERR-26181 recording {path}: too long to be compared; nothing was drawn, choose --from and --to"
+        f"P-ERR-26021 recording {path}: too long to be compared; nothing was drawn, choose --from and --to"
     )
 
 
