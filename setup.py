@@ -18,7 +18,7 @@ PACKAGE = "cnc_ptp"
 ROOT = Path(__file__).parent.resolve()
 COMMANDS = (
     "simulate", "run", "status", "jog", "check", "explain", "format", "replay", "report", "plot", "layout", "recover",
-    "params", "identify", "circle", "curve", "lists",
+    "params", "identify", "circle", "curve", "lists", "sweep",
 )  # fmt: skip
 """Executables of their own. Not `do` and `export`, words of the shell, nor `watch` and `init`, which Linux has."""
 NODES = ("nc_channel", "axis", "spindle", "plc_bridge", "clock", "recorder", "player")
@@ -201,6 +201,7 @@ setup(
     extras_require={
         "data": ["pandas>=2.2,<4", "pyarrow>=18"],  # tables and Parquet of recordings
         "foxglove": ["foxglove-sdk>=0.30,<0.31"],  # live stream
+        "sweep": ["dask[distributed]>=2025.2", "optuna>=4.2,<6", "pyarrow>=18"],
     },
     entry_points={"console_scripts": console_scripts()},
     zip_safe=False,

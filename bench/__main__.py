@@ -8,7 +8,7 @@ import platform
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -28,6 +28,8 @@ TOPICS = (
     "streaming",
     "recording",
     "columns",
+    "what_if",
+    "recorder",
     "offline",
     "graph",
     "service",
@@ -36,6 +38,7 @@ TOPICS = (
     "slaves",
     "spindles",
     "lists",
+    "sweep",
 )
 
 
@@ -78,13 +81,16 @@ def write_json(path: str, effort: Effort, results: dict[str, list[Figure]]) -> N
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
 @click.argument("topics", nargs=-1, type=click.Choice(TOPICS))
 @click.option("--short", is_flag=True, help="Fewer runs of smaller jobs, 15 s of the graph.")
+@click.option("--seconds", type=click.FloatRange(1.0), help="Length of the real-time runs of the graph.")
 @click.option("--json", "json_file", type=click.Path(dir_okay=False), help="Also write all figures to this file.")
-def main(topics: tuple[str, ...], short: bool, json_file: str | None) -> None:
+def main(topics: tuple[str, ...], short: bool, seconds: float | None, json_file: str | None) -> None:
     """Measure speed and memory of TOPICS (all if none is given). Figures never fail; goals are shown next to them.
 
     Medians over several runs (control: the least). If another program does the same, it runs in turn with ours.
     """
     effort = SHORT if short else FULL
+    if seconds is not None:
+        effort = replace(effort, graph_seconds=seconds)
     console = Console(highlight=False, width=None if sys.stdout.isatty() else 140)
     results: dict[str, list[Figure]] = {}
     for topic in topics or TOPICS:

@@ -7,7 +7,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -30,6 +30,8 @@ SECOND_NS = 1_000_000_000
 CYCLES = 1000
 """Of a second."""
 GIB_MB = 2**30 / 1e6
+Write = Callable[[McapFile], None]
+NOTHING: Mapping[int, Write] = {}
 
 
 def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
@@ -80,8 +82,8 @@ def one_second(path: Path) -> Path:
     return path
 
 
-def repeat_second(second: Path, path: Path, seconds: int) -> None:
-    """The chunks of a file of one second, written for each of many seconds."""
+def repeat_second(second: Path, path: Path, seconds: int, before: Mapping[int, Write] = NOTHING) -> None:
+    """The chunks of a file of one second, written for each of many seconds; `before` some of them something else."""
     source = McapIndex(second)
     groups = [[(run, run.head["log_time"].copy()) for run in source.runs(c, [*source.channels])] for c in source.chunks]
     with McapFile(path) as file:
@@ -89,6 +91,8 @@ def repeat_second(second: Path, path: Path, seconds: int) -> None:
             announce(file, source, channel)
         for index in range(seconds):
             file.finish_chunks()
+            if index in before:
+                before[index](file)
             for runs in groups:
                 for run, times in runs:
                     file.messages(run.channel_id, later(source, run, index), times + index * SECOND_NS)

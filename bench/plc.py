@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
+from contextlib import suppress
 from dataclasses import dataclass, field
+from math import nan
 from multiprocessing import get_context
 from pathlib import Path
 from statistics import median, quantiles
@@ -25,6 +28,10 @@ from bench.jobs import MACHINE
 CALLS = 200
 FLOODED = ("x", "y", "z", "channel")
 PERIOD = 0.001
+LEAST_RATE = 0.999 / PERIOD
+"""1/s: the sender ends within the last period, so that it is never quite 1 kHz."""
+WARM_UP = 1000
+"""Messages on each topic before the memory is read: buffers of DDS have grown then."""
 PAUSE = 0.0537
 """Seconds between two calls: beats against the blocks, so that calls come at any moment of a block."""
 SETTLING = 0.3
@@ -42,14 +49,19 @@ class PlcRun:
     sent: int = 0
     seconds: float = 0.0
     core_seconds: float = 0.0
-    newest_won: bool = False
-    growth_mb: float = 0.0
+    largest_lag: float = 0.0
+    newest_won: int = 0
+    """Topics whose last value has won."""
+    bridge_growth_mb: float = 0.0
+    others_growth_mb: float = 0.0
+    lost: float = nan
+    """Blocks, as the run tells at its end."""
     missing: int = 0
 
 
 def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
     """All in one run of the graph."""
-    calls, seconds = effort.scaled(CALLS), effort.graph_seconds
+    calls, seconds = effort.scaled(CALLS, least=2), effort.graph_seconds
     show(f"{calls} services, {calls} override messages, {seconds:.0f} s at 1 kHz on {len(FLOODED)} topics")
     os.environ["ROS_DOMAIN_ID"] = str(1 + os.getpid() % 100)
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
@@ -60,12 +72,18 @@ def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
     blocks = "the same in blocks that x has published since, p99"
     yield Figure(blocks, p99(run.reaction_blocks), "blocks", goal=2.0, at_most=True)
     yield Figure("the same, largest", max(run.reaction_blocks), "blocks")
-    yield Figure("override messages per second and topic", run.sent / run.seconds, "1/s", goal=1000.0)
+    yield Figure(f"seconds of override messages on {len(FLOODED)} topics", run.seconds, "s")
+    rate = "override messages per second and topic"
+    yield Figure(rate, run.sent / run.seconds, "1/s", goal=LEAST_RATE)
+    yield Figure("largest delay of one of them at its sender", 1000.0 * run.largest_lag, "ms")
     sending = 1e6 * run.core_seconds / (run.sent * len(FLOODED))
     yield Figure("time of a core that sending one of them takes, with all threads of DDS", sending, "µs")
+    yield Figure("blocks lost", run.lost, "", goal=0.0, at_most=True)
     yield Figure("samples missing in the recording", run.missing, "", goal=0.0, at_most=True)
-    yield Figure("topics whose newest value has won", len(FLOODED) * run.newest_won, "", goal=len(FLOODED))
-    yield Figure("memory that the bridge has gained meanwhile (PSS)", run.growth_mb, "MB", goal=1.0, at_most=True)
+    yield Figure("topics whose newest value has won", run.newest_won, "", goal=len(FLOODED))
+    memory = "memory that the bridge has gained meanwhile (PSS)"
+    yield Figure(memory, run.bridge_growth_mb, "MB", goal=1.0, at_most=True)
+    yield Figure("the same, all other processes of the run together", run.others_growth_mb, "MB")
 
 
 def p99(values: Sequence[float]) -> float:
@@ -81,14 +99,16 @@ def measure(calls: int, seconds: float) -> PlcRun:
     with tempfile.TemporaryDirectory() as folder:
         record = str(Path(folder) / "run.mcap")
         command = [sys.executable, "-m", "cnc_ptp", "run", MACHINE, "--stay", "--record", record]
-        graph = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+        graph = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)  # it tells little, at its end
         try:
             process.initialise()
             run = session(Plc(), psutil.Process(graph.pid), calls, seconds)
         finally:
             graph.terminate()
-            graph.wait()
+            told, _ = graph.communicate()
             rclpy.try_shutdown()
+        if found := re.search(r"lost (\d+), computed twice", told):
+            run.lost = int(found[1])
         run.missing = missing_samples(record)
     return run
 
@@ -108,20 +128,30 @@ def session(plc: Plc, graph: psutil.Process, calls: int, seconds: float) -> PlcR
 
 def flood(plc: Plc, graph: psutil.Process, seconds: float, run: PlcRun) -> None:
     """One message a millisecond on each topic, by a process that does nothing else; the last value must hold."""
-    bridge = next(each for each in graph.children(recursive=True) if "cnc_ptp.nodes.plc_bridge" in words_of(each))
+    family = [graph, *graph.children(recursive=True)]
+    bridge = next(each for each in family if "cnc_ptp.nodes.plc_bridge" in words_of(each))
     run.sent = round(seconds / PERIOD)
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as sender:
-        plc.result(sender.submit(send, 1000), PATIENCE)
-        before = bridge.memory_full_info().pss
-        run.seconds, run.core_seconds, last = plc.result(sender.submit(send, run.sent), 10.0 * seconds + PATIENCE)
-    run.growth_mb = (bridge.memory_full_info().pss - before) / 1e6
-    plc.wait(lambda: all(plc.override_of(unit) == last for unit in FLOODED))
+        plc.result(sender.submit(send, WARM_UP), PATIENCE)
+        before = {each: memory_mb(each) for each in family}
+        flooding = sender.submit(send, run.sent)
+        run.seconds, run.core_seconds, run.largest_lag, last = plc.result(flooding, 10.0 * seconds + PATIENCE)
+    gained = {each: memory_mb(each) - before[each] for each in family}
+    run.bridge_growth_mb = gained.pop(bridge)
+    run.others_growth_mb = sum(gained.values())
+    with suppress(TimeoutError):  # a value that was lost is a figure, too
+        plc.wait(lambda: all(plc.override_of(unit) == last for unit in FLOODED))
     plc.pause(SETTLING)
-    run.newest_won = all(plc.override_of(unit) == last for unit in FLOODED)
+    run.newest_won = sum(plc.override_of(unit) == last for unit in FLOODED)
 
 
-def send(messages: int) -> tuple[float, float, float]:
-    """Seconds that so many messages on each topic took, those of a core, and the last value: in its own process.
+def memory_mb(process: psutil.Process) -> float:
+    return float(process.memory_full_info().pss) / 1e6
+
+
+def send(messages: int) -> tuple[float, float, float, float]:
+    """In its own process: seconds that so many messages on each topic took, those of a core, the largest delay of one,
+    and the last value.
 
     They are serialised before, so that what is measured is the machine and not a client in Python.
     """
@@ -140,16 +170,17 @@ def send(messages: int) -> tuple[float, float, float]:
     texts = [serialize_message(msg.Override(valid=True, percent=percent)) for percent in percents]
     while not all(writer.get_subscription_count() for writer in writers):
         time.sleep(0.01)
-    begin, of_core = time.monotonic(), time.process_time()
+    begin, of_core, lag = time.monotonic(), time.process_time(), 0.0
     for number in range(messages):
         for writer in writers:
             writer.publish(texts[number % 41])
-        if (left := begin + (number + 1) * PERIOD - time.monotonic()) > 0.0:
-            time.sleep(left)
+        left = begin + (number + 1) * PERIOD - time.monotonic()
+        lag = max(lag, -left)
+        time.sleep(max(0.0, left))
     seconds, of_core = time.monotonic() - begin, time.process_time() - of_core
     time.sleep(SETTLING)
     node.destroy_node()
-    return seconds, of_core, percents[(messages - 1) % 41]
+    return seconds, of_core, lag, percents[(messages - 1) % 41]
 
 
 class Plc:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -19,13 +19,18 @@ from cnc_ptp.commands.completion import (
 )
 from cnc_ptp.commands.console import print_error
 from cnc_ptp.errors import WRONG_INPUT, CncError
-from cnc_ptp.number_range import DURATION, POSITIVE, RATE, STATES_PER_SECOND
+from cnc_ptp.number_range import DURATION, PERCENT, POSITIVE, RATE, STATES_PER_SECOND
 from cnc_ptp.ros_arguments import client_namespace_option, namespace_option, ros_arguments
 from cnc_ptp.ros_arguments import split as split_ros_arguments
 from cnc_ptp.start_options import start_options, take_start
 
+if TYPE_CHECKING:
+    from cnc_ptp.recording.recorder_options import RecorderOptions
+
 MACHINE = click.argument("machine", type=click.Path(dir_okay=False))
-RECORDING = click.argument("recording", type=click.Path(dir_okay=False))
+RECORDING = click.argument("recording", type=click.Path())
+SCENARIO = click.option("--scenario", type=click.Path(dir_okay=False), help="Timed PLC commands (YAML).")
+PROGRAM = click.option("--program", type=click.Path(dir_okay=False), help="NC program for the first channel.")
 CLIENTS = ("status", "do", "jog", "watch")
 MCAP_MAGIC = b"\x89MCAP"
 LIST_KINDS = ("axis", "channel", "tool", "zero", "clamp", "compensation", "startup")
@@ -48,17 +53,27 @@ def run_options(function: Callable[..., Any]) -> Callable[..., Any]:
     for option in (
         start_options,
         click.option("--strict", is_flag=True, help="A refused command makes the exit status 1."),
+        click.option(
+            "--compression",
+            type=click.Choice(("zstd", "lz4", "none")),
+            default="zstd",
+            show_default=True,
+            help="Compression of the recording.",
+        ),
+        click.option(
+            "--split", help="Record in parts of a size or a time, 500MB or 10min; the recording is a folder then."
+        ),
         click.option("--record-when", help="Begin the recording when a field has this value: 'x.set_velocity != 0'."),
-        click.option("--record", type=click.Path(dir_okay=False), help="Write an MCAP recording."),
+        click.option("--record", type=click.Path(), help="Write an MCAP recording."),
         click.option(
             "--duration", type=DURATION, help="End after this many seconds; default: when everything is finished."
         ),
         click.option(
             "--plc", type=click.Path(dir_okay=False), help="PLC in a file: a Python class Plc with cycle(io)."
         ),
-        click.option("--scenario", type=click.Path(dir_okay=False), help="Timed PLC commands (YAML)."),
+        SCENARIO,
         DIALECT,
-        click.option("--program", type=click.Path(dir_okay=False), help="NC program for the first channel."),
+        PROGRAM,
         MACHINE,
     ):
         function = option(function)
@@ -97,12 +112,20 @@ def main(context: click.Context) -> None:
 
 @main.command("simulate")
 @run_options
+@click.option(
+    "--checkpoints",
+    type=click.FloatRange(min=0.0),
+    default=10.0,
+    show_default=True,
+    help="Machine time in s between two checkpoints in the recording, from which a replay can begin; 0: none.",
+)
 def simulate_command(**options: Any) -> None:
     """Run a machine offline, as fast as possible."""
     from cnc_ptp.commands.run.simulate import simulate
+    from cnc_ptp.recording.recorder_options import FROM_THE_START
 
-    require_recording(options)
-    sys.exit(simulate(begin=take_start(options, options["program"]), **options))
+    recorder = take_recorder(options) or FROM_THE_START
+    sys.exit(simulate(begin=take_start(options, options["program"]), recorder=recorder, **options))
 
 
 @main.command("run")
@@ -118,6 +141,15 @@ def simulate_command(**options: Any) -> None:
 @click.option("--free-run", is_flag=True, help="As fast as all nodes follow, instead of in real time.")
 @click.option("--composed", is_flag=True, help="All nodes in one process.")
 @namespace_option
+@click.option(
+    "--recorder", "on_demand", is_flag=True, help="A recorder that records on demand: do recorder start FILE."
+)
+@click.option("--keep", type=POSITIVE, help="Keep the last seconds in memory: do recorder snapshot FILE.")
+@click.option("--snapshots", type=click.Path(file_okay=False), help="Folder for a snapshot at each error; with --keep.")
+@click.option(
+    "--snapshot-when",
+    help="A snapshot also when a field comes to a value: 'x.following_error > 0.1'; with --snapshots.",
+)
 @click.option("--stay", is_flag=True, help="Continue when everything is at a standstill, for commands, until Ctrl-C.")
 @click.option(
     "--state-rate", type=STATES_PER_SECOND, help="Live states per second on /<unit>/state, 0 = none (P-MACH-00070)."
@@ -130,19 +162,81 @@ def run_command(**options: Any) -> None:
         start_server()  # first: it imports for all nodes, which takes as long as what comes now
     from cnc_ptp.commands.run.run import run
 
-    require_recording(options)
+    recorder = take_recorder(options)
     if options["stay"] and options["duration"] is not None:
         raise click.UsageError("--stay and --duration exclude each other: --duration stays for that many seconds.")
     if options["stay"] and options["free_run"]:
         raise click.UsageError("--stay and --free-run exclude each other: a machine is commanded in real time.")
     ros_arguments().require_for_all_nodes("cnc_ptp run")
-    sys.exit(run(begin=take_start(options, options["program"]), **options))
+    sys.exit(run(begin=take_start(options, options["program"]), recorder=recorder, **options))
 
 
-def require_recording(options: dict[str, Any]) -> None:
-    """Raises UsageError for a trigger without a recording."""
-    if options["record_when"] is not None and options["record"] is None:
-        raise click.UsageError("--record-when needs --record")
+def take_recorder(options: dict[str, Any]) -> RecorderOptions | None:
+    """Takes the options of the recorder out of the others; None where there is none. Raises UsageError."""
+    from cnc_ptp.recording.recorder_options import RecorderOptions
+
+    when, split, keep = options.pop("record_when"), options.pop("split"), options.pop("keep", None)
+    folder, snapshot_when = options.pop("snapshots", None), options.pop("snapshot_when", None)
+    on_demand = options.pop("on_demand", False) or keep is not None
+    compression, record = options.pop("compression"), options["record"]
+    needs = (
+        (when, record, "--record-when needs --record"),
+        (split, record or on_demand or None, "--split needs --record"),
+        (folder, keep, "--snapshots needs --keep"),
+        (snapshot_when, folder, "--snapshot-when needs --snapshots"),
+    )
+    for given, needed, text in needs:
+        if given is not None and needed is None:
+            raise click.UsageError(text)
+    if record is None and not on_demand and options.get("foxglove") is None:
+        return None
+    scenario, plc = options["scenario"], options["plc"]
+    return RecorderOptions(when, split, compression, keep or 0.0, folder, snapshot_when, scenario, plc)
+
+
+def sweep_options(function: Callable[..., Any]) -> Callable[..., Any]:
+    """What varies, what is measured, where it is computed."""
+    for option in (
+        click.option("--scheduler", metavar="ADDRESS", help="Dask scheduler (tcp://host:8786) instead of processes."),
+        click.option("--workers", type=click.IntRange(min=1), help="Processes; default: one for each processor."),
+        click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of random values."),
+        click.option("--optimise", type=click.IntRange(min=1), metavar="N", help="N variants chosen by their results."),
+        click.option("--random", type=click.IntRange(min=1), metavar="N", help="N random variants, instead of a grid."),
+        click.option("--page", type=click.Path(dir_okay=False), help="HTML page to write."),
+        click.option("-o", "--output", required=True, type=click.Path(dir_okay=False), help="Parquet file to write."),
+        click.option(
+            "--goal", "goals", multiple=True, required=True, help="max(following_error.x), max:mean(path_velocity) ..."
+        ),
+        click.option(
+            "--vary", multiple=True, required=True, help="x.getriebe.0.kv=2000:8000:13, =a,b,c, =normal:mean:sigma ..."
+        ),
+        click.option("--duration", type=DURATION, help="End each run after this many seconds."),
+        SCENARIO,
+        DIALECT,
+        PROGRAM,
+        MACHINE,
+    ):
+        function = option(function)
+    return function
+
+
+@main.command("sweep")
+@sweep_options
+def sweep_command(**options: Any) -> None:
+    """Run a machine offline with many values of parameters.
+
+    The runs are compared by goals. There is one for each combination of the values, or for --random ones, or for those
+    that an optimiser chooses. What is finished is kept: the same command computes only what is missing.
+    """
+    if options["random"] is not None and options["optimise"] is not None:
+        raise click.UsageError("--random and --optimise exclude each other.")
+    if options["workers"] is not None and options["scheduler"] is not None:
+        raise click.UsageError("--workers and --scheduler exclude each other: a scheduler has its own workers.")
+    if options["program"] is None and options["scenario"] is None:
+        raise click.UsageError("--program or --scenario is needed.")
+    from cnc_ptp.commands.run.sweep import sweep
+
+    sys.exit(sweep(**options))
 
 
 COMPLETE_FROM = click.option(
@@ -275,11 +369,29 @@ def check_command(**options: Any) -> None:
 @click.option("--publish", is_flag=True, help="Publish the recorded topics again.")
 @click.option("--rate", type=RATE, default=1.0, show_default=True, help="Factor for --publish, 1 = real time.")
 @click.option("--inputs", is_flag=True, help="Publish PLC inputs too: a machine on this ROS domain acts on them.")
+@click.option("--from", "begin", type=DURATION, help="What if: changes count from this time on, s.")
+@click.option("--to", "end", type=DURATION, help="What if: to this time, s.")
+@click.option("--set", "parameters", multiple=True, metavar="UNIT.NAME=VALUE", help="What if: another parameter.")
+@click.option("--override", type=PERCENT, help="What if: override of the channels, percent.")
+@click.option("--program", type=click.Path(dir_okay=False), help="What if: in place of the loaded program.")
+@click.option("--commands", type=click.Path(dir_okay=False), help="What if: further commands, as a scenario.")
+@click.option("--output", "-o", type=click.Path(dir_okay=False), help="What if: record the changed run.")
+@click.option("--diff", is_flag=True, help="What if: print the difference (always without --output).")
+@click.option("--diff-page", "page", type=click.Path(dir_okay=False), help="What if: a page of both runs (.html).")
 @namespace_option
 def replay_command(**options: Any) -> None:
-    """Compute a recorded run again, or publish the recording."""
+    """Compute a recorded run again, also with something changed, or publish the recording."""
     from cnc_ptp.commands.run.replay import replay
 
+    names = ("begin", "end", "parameters", "override", "program", "commands", "output", "diff", "page")
+    changes = {name: options.pop(name) for name in names}
+    if any(value not in (None, (), False) for value in changes.values()):
+        if options["verify"] or options["publish"]:
+            raise click.UsageError("--verify and --publish do not go with a changed run; nothing was replayed")
+        from cnc_ptp.commands.run.what_if import what_if
+
+        changes["begin"] = changes["begin"] or 0.0
+        sys.exit(what_if(options["recording"], **changes))
     if not options["publish"]:
         ros_arguments().require_none("cnc_ptp replay without --publish")
         if options["inputs"] or options["rate"] != 1.0:
@@ -306,6 +418,17 @@ def part_options(function: Callable[..., Any]) -> Callable[..., Any]:
     ):
         function = option(function)
     return function
+
+
+@main.command("diff")
+@click.argument("first", type=click.Path(dir_okay=False))
+@click.argument("second", type=click.Path(dir_okay=False))
+@click.option("--output", "-o", type=click.Path(dir_okay=False), help="Page of both runs on top of each other (.html).")
+def diff_command(**options: Any) -> None:
+    """Compare two recorded runs of a machine: where they part, largest values, program times."""
+    from cnc_ptp.commands.look.diff import diff
+
+    sys.exit(diff(**options))
 
 
 @main.command("report")
@@ -390,7 +513,7 @@ def program_options(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 @main.command("plot")
-@click.argument("recording", type=click.Path(dir_okay=False), metavar="FILE")
+@click.argument("recording", type=click.Path(), metavar="FILE")
 @click.argument("more_topics", metavar="[TOPIC]...", nargs=-1)
 @click.option("--topics", callback=words, multiple=True, help="Fields to draw: x/set_velocity s/actual_speed_rpm")
 @part_options
@@ -552,7 +675,7 @@ def identify_options(function: Callable[..., Any]) -> Callable[..., Any]:
     for option in (
         click.option("--record", type=click.Path(dir_okay=False), help="Write an MCAP recording of the run."),
         click.option("-o", "--output", type=click.Path(dir_okay=False), help="YAML file to write instead of printing."),
-        click.option("--recording", type=click.Path(dir_okay=False), help="Evaluate this recording, drive nothing."),
+        click.option("--recording", type=click.Path(), help="Evaluate this recording, drive nothing."),
         click.option("--machine", type=click.Path(dir_okay=False), help="Machine file; a recording has its own."),
         click.argument("axis"),
     ):

@@ -23,5 +23,6 @@ class NumberRange(click.FloatRange):
 
 
 DURATION = NumberRange(0.0, LONGEST_RUN)
+PERCENT = NumberRange(0.0, 1000.0)
 STATES_PER_SECOND = NumberRange(0.0, 10_000.0)
 RATE = POSITIVE = NumberRange(min=0.0, min_open=True)

@@ -31,7 +31,7 @@ from cnc_ptp.parameters import AxisParameters
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import state_name
 
-GROUP = ("above", "master_stands", "master_lost")
+GROUP = ("above", "master_stands", "master_start", "master_lost")
 """Arguments that the PLC fills in."""
 
 SMALLEST_FACTOR, LARGEST_FACTOR = 1e-6, 1e6
@@ -42,7 +42,7 @@ class CouplingCommands:
     """`couple` and its kinds, `set_coupling_factor`, `set_cyclic_factor`; `lead` and `group_error`.
 
     What the axis itself cannot know comes with the command: the PLC, which sees all axes, fills in `above` (the masters
-    of the master), `master_stands` and `master_lost`.
+    of the master), `master_stands`, `master_start` (a command that may move it in this block) and `master_lost`.
     """
 
     def __init__(self, axis: Axis, *, axes: Mapping[str, AxisParameters], cycle_time: float) -> None:
@@ -99,7 +99,11 @@ class CouplingCommands:
         """
         command, axis = "couple_flying_saw", self._axis
         group = {name: others.pop(name) for name in GROUP if name in others}
-        self._check(command, master, **(group | {"master_stands": True, "on_path": self._can_be_carried(cycle)}))
+        self._check(
+            command,
+            master,
+            **(group | {"master_stands": True, "master_start": "", "on_path": self._can_be_carried(cycle)}),
+        )
         self._check_factor(command, factor)
         limits = axis.checks.dynamics(command, others)
         if not axis.on_path:
@@ -128,12 +132,14 @@ class CouplingCommands:
         file: str = "",
         above: Sequence[str] = (),
         master_stands: bool = True,
+        master_start: str = "",
         master_lost: bool = False,
         on_path: bool = False,
     ) -> str | None:
         """Slave position over master position from a table of points (master, slave)."""
         command = "couple_cam"
-        self._check(command, master, above=above, master_stands=master_stands, master_lost=master_lost, on_path=on_path)
+        standstill: dict[str, Any] = {"master_stands": master_stands, "master_start": master_start}
+        self._check(command, master, above=above, master_lost=master_lost, on_path=on_path, **standstill)
         self._check_factor(command, slave_scaling, "slave_scaling")
         self._check_factor(command, master_scaling, "master_scaling")
         coupling = CamCoupling(
@@ -166,6 +172,7 @@ class CouplingCommands:
         *,
         above: Sequence[str] = (),
         master_stands: bool = True,
+        master_start: str = "",
         master_lost: bool = False,
         on_path: bool = False,
     ) -> None:
@@ -188,6 +195,10 @@ class CouplingCommands:
             axis.refuse(command, COUPLING_LOOP, reason, master=master, chain=chain)
         if not master_stands:
             reason = f"the master {master} moves; both axes must be at a standstill"
+            axis.refuse(command, MASTER_NOT_STANDING, reason, master=master)
+        if master_start:
+            given = f"{master_start} was commanded in the same block"
+            reason = f"{given}, so that the standstill of the master {master} is known in the next one only"
             axis.refuse(command, MASTER_NOT_STANDING, reason, master=master)
 
     def _check_factor(self, command: str, factor: float, name: str = "factor") -> None:

@@ -91,9 +91,14 @@ class MotionQueue:
         if not motion.endless and (distance < increment or distance == 0.0):
             axis.has_been_stopped = False
             axis.last_target = goal
-            reason = f"{distance:g} {axis.unit} is below one encoder increment ({increment} {axis.unit})"
-            text = f"axis {axis.name}: {motion.command} over {reason}; the axis does not move"
-            return warning_text(BELOW_INCREMENT, text, distance=distance, limit=increment)
+            move = f"axis {axis.name}: {motion.command} over"
+            if distance == 0.0:
+                text = f"{move} 0 {axis.unit}: the axis is at its target already; the axis does not move"
+                return warning_text(BELOW_INCREMENT, text)
+            size = f"{distance:g} {axis.unit} is below one encoder increment ({increment} {axis.unit})"
+            return warning_text(
+                BELOW_INCREMENT, f"{move} {size}; the axis does not move", distance=distance, limit=increment
+            )
         axis.absorb(cycle)
         self.begin(cycle, motion, goal)
         return motion.warning

@@ -52,6 +52,9 @@ class SuperimposedCommands:
         self._check_release(cycle, distance, limits)
         small = abs(distance) < axis.parameters.encoder_increment or distance == 0.0
         if small and not axis.added.moving(cycle):
+            if distance == 0.0:
+                text = f"axis {axis.name}: {MOVE} over 0 {axis.unit}: there is no distance to add; nothing is added"
+                return warning_text(BELOW_INCREMENT, text)
             size, limit = abs(distance), axis.parameters.encoder_increment
             increment = f"one encoder increment ({limit} {axis.unit})"
             text = f"axis {axis.name}: {MOVE} over {size:g} {axis.unit} is below {increment}; nothing is added"

@@ -2,18 +2,44 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Final
+from typing import Final, NamedTuple
 
 from cnc_ptp.nc.awaited import awaits_path
 from cnc_ptp.nc.canonical import BUSY, CanonicalBlock
-from cnc_ptp.nc.expressions.values import Values
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.measuring import Touch
 
 BUFFER: Final = 1000
 """Blocks that are interpreted ahead, before the path asks for them."""
+
+
+class RunAnswer(NamedTuple):
+    """What the interpreter got to know when it had asked for so many blocks."""
+
+    asked: int
+    actual: tuple[float, ...]
+    position: tuple[float, ...]
+    timers: tuple[tuple[int, float], ...]
+    touch: Touch | None
+    override: float
+
+
+class RunSource(ABC):
+    """An interpreter that runs with the program: an iterator that gets to know what only the run knows."""
+
+    @abstractmethod
+    def __iter__(self) -> RunSource: ...
+
+    @abstractmethod
+    def __next__(self) -> CanonicalBlock:
+        """Raises ProgramError, StopIteration."""
+
+    @abstractmethod
+    def give(self, answer: RunAnswer) -> None:
+        """What the next blocks may read."""
 
 
 class BlockStream:
@@ -29,17 +55,16 @@ class BlockStream:
 
     def __init__(
         self,
-        blocks: Iterator[CanonicalBlock],
+        blocks: Iterator[CanonicalBlock] | RunSource,
         total: int | None,
-        values: Values | None,
         blocks_per_cycle: int = 0,
         place: Callable[[], int] | None = None,
     ) -> None:
-        """`total`: number of blocks if it is known; `values` of the interpreter if it runs with the program.
+        """`total`: number of blocks if it is known.
 
         `blocks_per_cycle`: 0 is no limit. `place` in the text that the interpreter has reached.
         """
-        self._blocks, self._total, self._values = blocks, total, values
+        self._blocks, self._total = blocks, total
         self._for_cycle, self._place = blocks_per_cycle, place
         self._left = 0
         """Blocks that may still be interpreted in this cycle block."""
@@ -55,7 +80,12 @@ class BlockStream:
     @classmethod
     def of(cls, blocks: Sequence[CanonicalBlock]) -> BlockStream:
         """A program of which every block is known."""
-        return cls(iter(blocks), len(blocks), None)
+        return cls(iter(blocks), len(blocks))
+
+    @property
+    def running(self) -> RunSource | None:
+        """The interpreter that runs with the program, if one does."""
+        return self._blocks if isinstance(self._blocks, RunSource) else None
 
     @property
     def fill(self) -> float:
@@ -88,9 +118,9 @@ class BlockStream:
         """Actual and set positions of the axes at this instant, the timers that were read (ms), how a measuring run
         has ended; the override of the path (percent).
         """
-        if self._values is not None:
-            self._values.actual, self._values.position, self._values.touch = actual, position, touch
-            self._values.timers, self._values.override = dict(timers), override
+        running = self.running
+        if running is not None:
+            running.give(RunAnswer(0, actual, position, tuple(timers.items()), touch, override))
 
     def next(self) -> CanonicalBlock | None:
         """The next block, BUSY while the interpreter computes, or None at the end of the program.

@@ -24,6 +24,7 @@ from cnc_ptp.channel.program_sequence import NO_SOURCE, OFF_PATH, Phase, Program
 from cnc_ptp.channel.program_start import NOTHING_STARTED, ProgramStart, start_point
 from cnc_ptp.channel.program_times import NO_TIMES, ProgramProgress, block_times
 from cnc_ptp.channel.program_view import ProgramView
+from cnc_ptp.channel.running_blocks import RunningBlocks
 from cnc_ptp.channel.supervision import Finding, Supervision
 from cnc_ptp.channel.thread_errors import ThreadErrors, add_thread
 from cnc_ptp.channel.time_estimate import TimeEstimate
@@ -34,7 +35,7 @@ from cnc_ptp.nc.expressions.values import Variable
 from cnc_ptp.nc.faults import ProgramError, line_of_program
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.modal_state import Pairs
-from cnc_ptp.nc.parser import NO_FILES, parse_program
+from cnc_ptp.nc.parser import NO_FILES
 from cnc_ptp.nc.program import Vocabulary
 from cnc_ptp.nc.vocabularies import VOCABULARIES
 from cnc_ptp.nc.vocabulary import MAX_SKIP_LEVEL
@@ -115,8 +116,6 @@ class ChannelUnit(Unit):
         self._vocabulary = self._check.vocabulary
         """That of the last load; manual blocks are read in it."""
         self._program: Program | None = None
-        self._library: Mapping[str, Program] = {}
-        """The programs that the loaded one may call; manual blocks may call them, too."""
         self._prepared: PreparedProgram | None = None
         self._state = self._check.state({}, {}, {})
         """The state in which an MDI text starts: that of the previous one, if it was carried out in full."""
@@ -197,7 +196,6 @@ class ChannelUnit(Unit):
             self._program = self._check.parse(text, program, files, dialect)
         if vocabulary is not self._vocabulary:
             self._vocabulary, self._state = vocabulary, self._initial_state({})
-        self._library = self._program.library
         self._sequence.source = NO_SOURCE
 
     def _vocabulary_of(self, dialect: str | None) -> Vocabulary:
@@ -246,10 +244,7 @@ class ChannelUnit(Unit):
         self._require_idle("mdi")
         state = self._state.copy()
         state.modal.spindle.gears = self._check.gears(self._feedback)
-        vocabulary, library = self._vocabulary, self._library
-        program = parse_program(
-            text, "mdi", mdi=True, files=files, cycles=self._check.cycles, library=library, vocabulary=vocabulary
-        )
+        program = self._check.parse_manual(text, files, self._vocabulary, self._program)
         self._begin(cycle, "mdi", program, state)
 
     def do_set_zero_offset(self, cycle: int, *, index: int, axis: str, value: float) -> None:
@@ -604,10 +599,10 @@ class ChannelUnit(Unit):
         stream = BlockStream.of(known.blocks)
         if not known.complete:
             state = before
-            again = None if begin is None else begin.again()
-            blocks = self._check.running(program, start, state, unreferenced, again)
+            point = None if begin is None else begin.point
+            blocks = RunningBlocks(self._check, program, tuple(start), state, tuple(unreferenced), point)
             place = program.place if program.streamed else None
-            stream = BlockStream(blocks, known.total, state.values, self._parameters.blocks_per_cycle, place)
+            stream = BlockStream(blocks, known.total, self._parameters.blocks_per_cycle, place)
         self._links = state.modal.spindle.links
         self._state = self._initial_state({})
         self._state_at_end, self._is_mdi = state, command == "mdi"
@@ -676,6 +671,12 @@ class ChannelUnit(Unit):
             self._apply_override()
         if self._path_spindle.node and not before:
             self._motion.take_spindle()
+
+    @property
+    def interpreter(self) -> RunningBlocks | None:
+        """That of a program that is interpreted while it runs."""
+        running = self._sequence.stream.running
+        return running if isinstance(running, RunningBlocks) else None
 
     @property
     def runs_out(self) -> bool:

@@ -42,12 +42,12 @@ from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.measuring import measures
 from cnc_ptp.nc.modal_state import FacingAxis, ModalState, Pair, Pairs
-from cnc_ptp.nc.parser import NO_FILES, parse_program
+from cnc_ptp.nc.parser import NO_FILES
 from cnc_ptp.nc.plain_channel import plain_channel
 from cnc_ptp.nc.program import Limits, Spindle, SpindleTable, TurningAxes, Vocabulary
+from cnc_ptp.nc.program_origin import Origin, read_origin
 from cnc_ptp.nc.program_text import ProgramText
 from cnc_ptp.nc.radius.radius_state import radius_settings
-from cnc_ptp.nc.streamed_program import stream_program
 from cnc_ptp.nc.vocabularies import VOCABULARIES
 from cnc_ptp.parameters import (
     AxisParameters,
@@ -262,8 +262,14 @@ class ProgramCheck:
     def parse(self, text: str, file: str, files: Mapping[str, str] = NO_FILES, dialect: str | None = None) -> Program:
         """A program that is loaded; beyond P-CHAN-90005 it is read while it runs. Raises its first syntax error."""
         vocabulary = self.vocabulary if dialect is None else VOCABULARIES[dialect]
-        read = stream_program if len(text) > self._channel.checked_text else parse_program
-        return read(text, file, files=files, cycles=self.cycles, vocabulary=vocabulary)
+        streamed = len(text) > self._channel.checked_text
+        return read_origin(Origin(text, file, files, self.cycles, vocabulary, streamed))
+
+    def parse_manual(
+        self, text: str, files: Mapping[str, str], vocabulary: Vocabulary, loaded: Program | None
+    ) -> Program:
+        """Manual blocks, which may also call what the program `loaded` may call. Raises their first syntax error."""
+        return read_origin(Origin(text, "mdi", files, self.cycles, vocabulary, False, True, loaded))
 
     def blocks(self, program: Program, start: Sequence[float]) -> list[CanonicalBlock]:
         """The blocks of a program that is started from the initial state, as far as they are known before it runs."""

@@ -58,10 +58,6 @@ class ProgramStart:
         self.head: list[CanonicalBlock] = []
         self.found: Source | None = None
 
-    def again(self) -> ProgramStart:
-        """The same start, for another interpretation."""
-        return ProgramStart(self.point, self.program)
-
     @property
     def search(self) -> BlockSearch:
         """For the interpreter."""

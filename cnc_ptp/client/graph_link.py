@@ -310,7 +310,7 @@ class Jogging:
 
 
 def ask(unit: str, command: str, arguments: Mapping[str, Any], client: MachineClient) -> Reply:
-    """By the service of a unit. Raises CncError 26136, 22001."""
+    """By the service of a unit. Raises CncError 26136."""
     answer = client.ask(unit, command, arguments)
     values = read_values(answer.values_json)
     return Reply(answer.cycle, 0 if answer.accepted else answer.error_id, answer.message, values, answer.job)

@@ -91,7 +91,7 @@ def _point(speed: str, acceleration: str, unit: str, no_numbers: str) -> CurvePo
         raise ValueError(no_numbers) from None
     point = CurvePoint(given * SPEED_UNITS[unit], point_acceleration)
     if not 0.0 <= point.speed <= LARGEST_SPEED:
-        raise ValueError(f"speed {given:g} {unit} is not within 0 … {LARGEST_SPEED / SPEED_UNITS[unit]:g} {unit}")
+        raise ValueError(f"speed {given:g} {unit} is not within 0 ... {LARGEST_SPEED / SPEED_UNITS[unit]:g} {unit}")
     if not 0.0 < point.acceleration <= LARGEST_ACCELERATION:
         raise ValueError(f"acceleration {point_acceleration:g} °/s² is not above 0 and up to {LARGEST_ACCELERATION:g}")
     return point

@@ -55,6 +55,17 @@ class OfflineMachine:
         """The unit `name`, for commands between blocks."""
         return self._runners[name]
 
+    @property
+    def parts(self) -> tuple[dict[str, UnitRunner], dict[str, CycleBlock]]:
+        """The units and their last blocks, as they are between two blocks."""
+        return self._runners, self._blocks
+
+    def go_on_from(self, next_cycle: int, runners: Mapping[str, UnitRunner], blocks: Mapping[str, CycleBlock]) -> None:
+        """Takes units with the state that they had before `next_cycle`, and what was published before it."""
+        self._first_cycle = next_cycle
+        self._runners |= runners
+        self._blocks |= blocks
+
     def tick(self) -> Outputs:
         """Computes the next block of all units."""
         return self._compute(with_commands=True)
@@ -65,6 +76,13 @@ class OfflineMachine:
             for command in of_unit:
                 self._runners[name].command(command)
         return self._compute(with_commands=False)
+
+    def changed_tick(self, commands: Mapping[str, Iterable[Command]]) -> Outputs:
+        """Computes the next block of all units with commands from outside and those that units give each other."""
+        for name, of_unit in commands.items():
+            for command in of_unit:
+                self._runners[name].command(command)
+        return self._compute(with_commands=True)
 
     def _compute(self, *, with_commands: bool) -> Outputs:
         """One block of every unit. A coupled axis comes after its master, whatever the order of the machine is."""

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Iterable
-from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -27,7 +26,7 @@ Piece = tuple[float, float, float]
 
 
 class Profile:
-    """A table of constant-jerk segments. Nobody changes one; the compiled kernel refuses it.
+    """A table of constant-jerk segments. Nobody changes one.
 
     rows       (t, p, v, a, j) at the start of each segment; the last row is the end state with a = j = 0
     starts     the start times alone
@@ -40,10 +39,10 @@ class Profile:
     def __init__(self, rows: Iterable[Segment]) -> None:
         table = tuple(rows)
         last = table[-1]
-        self.rows: Final = table
-        self.starts: Final = tuple([row[0] for row in table])
-        self.duration: Final = last[0]
-        self.end: Final = (last[1], last[2], last[3])
+        self.rows = table
+        self.starts = tuple([row[0] for row in table])
+        self.duration = last[0]
+        self.end = (last[1], last[2], last[3])
         self._columns: NDArray[np.float64] | None = None
 
     def state_at(self, t: float) -> MotionState:

@@ -56,6 +56,10 @@ class StreamedProgram(Program):
     def place(self) -> int:
         return self._reached
 
+    def go_to(self, place: int) -> None:
+        """`place` of a program of the same text."""
+        self._reached = place
+
     def begin(self) -> None:
         """Reads to the main program. Raises the first ProgramError that is found before it."""
         reader = self._reader

@@ -21,10 +21,6 @@ TOLERANCES: Final = (*LENGTHS, "TRACK_DEV")
 OTHERS: Final = ("TRACK_DEV", "REMAIN_PART", "MAX_ANGLE")
 MAIN_AXES: Final = "XYZ"
 """Positions of the interim point."""
-CONTOUR: Final = (
-    "#CONTOUR MODE [DEV PATH_DEV=0.01 TRACK_DEV=5], [DIST PRE_DIST=1 POST_DIST=2] or"
-    " [POS PRE_DIST=1 POST_DIST=2 X10 Y5], ON, OFF"
-)
 SMOOTHING: Final = "#HSC ON [BSPLINE PATH_DEV=0.01 TRACK_DEV=5] or #HSC OFF"
 OF_MODE: Final = {
     DEV: ("PATH_DEV", *OTHERS),
@@ -32,6 +28,26 @@ OF_MODE: Final = {
     POS: ("PRE_DIST", "POST_DIST", "REMAIN_PART", "MAX_ANGLE", *MAIN_AXES),
     "OFF": (),
 }
+EXAMPLES: Final = {
+    "PATH_DEV": "=0.01",
+    "TRACK_DEV": "=5",
+    "PRE_DIST": "=1",
+    "POST_DIST": "=2",
+    "REMAIN_PART": "=20",
+    "MAX_ANGLE": "=120",
+    "X": "10",
+    "Y": "5",
+    "Z": "0",
+}
+"""Each word with a value, for texts."""
+
+
+def syntax(mode: str) -> str:
+    """The bracket of a mode with all that it takes."""
+    return f"[{' '.join([mode, *(f'{word}{EXAMPLES[word]}' for word in OF_MODE[mode])])}]"
+
+
+CONTOUR: Final = f"#CONTOUR MODE {syntax(DEV)}, {syntax(DIST)}, {syntax(POS)} or {syntax('OFF')}, ON, OFF"
 LARGEST: Final = {"REMAIN_PART": 100.0, "MAX_ANGLE": 180.0}
 
 

@@ -50,12 +50,12 @@ def _run(
     if watched or options.stay:
         monitor.watch_units()
     recorder = None
-    if options.recorder:  # before the units: it takes each block first
+    if options.recording:  # before the units: it takes each block first
         recorder = RecorderNode(
             machine,
             options.record,
             machine_text(options.machine),
-            when=options.record_when,
+            options=options.recording,
             foxglove=options.foxglove,
             handover=handover,
         )

@@ -55,6 +55,7 @@ class LiveServer:
 
     failed = False
     chunks_ready = False
+    size = 0
 
     def __init__(self, port: int, name: str) -> None:
         """Raises CncError 26023 and 26024."""

@@ -6,12 +6,10 @@ With `--foxglove PORT` it streams them, too.
 from __future__ import annotations
 
 import contextlib
-import os
 import sys
 import time
 from collections.abc import Callable, Iterator
 from functools import partial, wraps
-from pathlib import Path
 from typing import Any
 
 import click
@@ -30,6 +28,7 @@ from cnc_ptp.nodes.handover import Handover
 from cnc_ptp.nodes.live_stream import LiveServer, live_stream
 from cnc_ptp.nodes.observed_topics import observed_topics, type_name
 from cnc_ptp.nodes.polling_node import PollingNode, chain
+from cnc_ptp.nodes.recording_services import RecordingServices
 from cnc_ptp.nodes.topics import (
     BLOCK_CLASSES,
     BLOCK_TYPES,
@@ -49,13 +48,17 @@ from cnc_ptp.nodes.topics import (
 from cnc_ptp.parameters import MachineParameters, machine_text, read_machine
 from cnc_ptp.protocol.blocks import CycleBlock, CycleTick, Event, Severity
 from cnc_ptp.recording.mcap_file import NOT_WRITTEN
+from cnc_ptp.recording.on_demand import OnDemand, without_what
+from cnc_ptp.recording.recorder_options import FROM_THE_START, RecorderOptions
+from cnc_ptp.recording.settings import COMPRESSIONS
 from cnc_ptp.recording.trigger import Condition, make_recording
-from cnc_ptp.recording.writer import NoRecording, Recording
+from cnc_ptp.recording.writer import Recording
 from cnc_ptp.wire.block_codec import head_of, with_plain_header
 from cnc_ptp.wire.stamps import Stamps
 from cnc_ptp.wire.ticks import Tick, decode_tick
 
-NOT_WRITABLE = 26113
+Sink = Recording | OnDemand
+
 BLOCKS_MISSING = 26114
 ENDED_EARLY = 26015
 QUIET = 0.2
@@ -71,7 +74,8 @@ class RecorderNode(PollingNode):
     the topics of observed_topics, and of /rosout the messages of the nodes of its namespace: these come as raw bytes
     and are stamped with the time of their arrival, in free run with that of the last tick.
     Publishes /clock/report: ready, and in free run the newest tick that it has taken; /events: blocks that did not
-    arrive. A block that comes twice is recorded once.
+    arrive, snapshots. A block that comes twice is recorded once.
+    Services: ~/start and ~/stop of a recording, ~/snapshot of the last seconds.
     """
 
     def __init__(
@@ -80,20 +84,23 @@ class RecorderNode(PollingNode):
         path: str | None,
         machine_yaml: str,
         *,
-        when: str | None = None,
+        options: RecorderOptions = FROM_THE_START,
         foxglove: int | None = None,
         handover: Handover | None = None,
     ) -> None:
-        """`path`: None records nothing. `when`: the condition with which it begins. `foxglove`: port of a live stream.
+        """`path`: of the recording of the whole run, None = on demand alone. `foxglove`: port of a live stream.
 
-        `handover`: from the other nodes of this process.
+        `handover`: from nodes of this process.
         """
         super().__init__(RECORDER, enable_rosout=False)
-        if path is not None:
-            require_writable(path)
+        self._units = unit_kinds(machine)
+        self._options = options
+        options.require_places(path)
+        self._condition = None if options.when is None else Condition(options.when, self._units)
+        self._settings = options.settings()
+        self._snapshots = options.snapshots_of(self._units)
         self._server = None if foxglove is None else LiveServer(foxglove, "cnc_ptp")
-        self._live: Recording | NoRecording | None = None
-        self._condition = None if when is None else Condition(when, unit_kinds(machine))
+        self._live: Recording | None = None
         self._machine_yaml = machine_yaml
         self._path = path
         self._cycle_ns = machine.cycle_time_us * 1000
@@ -101,9 +108,8 @@ class RecorderNode(PollingNode):
         self._tick_ns = 0
         self._last_tick = -1
         """First cycle of the newest tick."""
-        self._recording: Recording | NoRecording | None = None
-        self._early: list[Any] = []
-        self._units = unit_kinds(machine)
+        self._recording: OnDemand | None = None
+        self._early: list[Callable[[], None]] = []
         self._next_cycle = dict.fromkeys(self._units, 0)
         self._heard = time.monotonic()
         self._report_publisher = self.create_publisher(msg.BlockReport, REPORT, BLOCKS)
@@ -126,6 +132,7 @@ class RecorderNode(PollingNode):
             self.create_subscription(message_type, topic, received, quality, raw=True)
         received = self._guarded(self._on_log)
         self.create_subscription(Log, ROSOUT, received, qos_profile_rosout_default, raw=True)
+        RecordingServices(self, lambda: self._recording)
         self._ready_timer = self.create_timer(process.READY_PERIOD, self._report_ready)
         self.create_timer(LOOK_PERIOD, self._guarded(self._look))
 
@@ -146,22 +153,23 @@ class RecorderNode(PollingNode):
             try:
                 callback(*arguments)
             except CncError as error:
-                if error.number == NOT_WRITTEN and isinstance(self._recording, Recording):
+                if error.number == NOT_WRITTEN and self._recording is not None:
                     self._go_on_without(self._recording, error)
                 else:
                     self.failure = self.failure or error
 
         return call
 
-    def _go_on_without(self, recording: Recording, error: CncError) -> None:
+    def _go_on_without(self, recording: OnDemand, error: CncError) -> None:
         """The disk is full: the recording gets its end, if there is room for it, and the run continues."""
-        self._recording = NoRecording(recording.stamps)
         with contextlib.suppress(CncError):
-            recording.close()
+            recording.fail()
         cycle = max(0, self._last_tick)
         text = f"recorder: {error.reason}; the run continues without it, about cycle {cycle} and later are missing"
-        event = Event(cycle, RECORDER, Severity.ERROR, ENDED_EARLY, text)
-        stamp = convert.time_message(recording.stamps.at(cycle))
+        self._publish(Event(cycle, RECORDER, Severity.ERROR, ENDED_EARLY, text))
+
+    def _publish(self, event: Event) -> None:
+        stamp = convert.time_message(self._recorded.stamps.at(event.cycle))
         self._event_publisher.publish(convert.event_to_message(event, stamp))
 
     def destroy_node(self) -> None:
@@ -191,7 +199,9 @@ class RecorderNode(PollingNode):
             self._free_run = not message.scheduled_monotonic_ns
             if not self._free_run:
                 process.take_priority()
-            self._begin(start_ns)
+            if self._server is not None:
+                self._live = live_stream(self._server, start_ns, self._cycle_ns)
+            self._recording = self._begin(start_ns, message.first_cycle)
             for record in self._early:
                 record()
             self._early.clear()
@@ -201,18 +211,25 @@ class RecorderNode(PollingNode):
             for sink in self._sinks:
                 sink.tick(tick, message.scheduled_monotonic_ns)
 
-    def _begin(self, start_ns: int) -> None:
-        if self._server is not None:
-            self._live = live_stream(self._server, start_ns, self._cycle_ns)
-        if self._path is None:
-            self._recording = NoRecording(Stamps(start_ns, self._cycle_ns))
-        else:
-            self._recording = make_recording(self._path, self._machine_yaml, start_ns, self._cycle_ns, self._condition)
-
-    @property
-    def _sinks(self) -> list[Recording | NoRecording]:
-        """The recording and the live stream, since the first tick."""
-        return [sink for sink in (self._live, self._recording) if sink is not None]
+    def _begin(self, start_ns: int, first_cycle: int) -> OnDemand:
+        """With the first tick."""
+        whole_run = None
+        if self._path is not None:
+            late = without_what(first_cycle)
+            times = start_ns, self._cycle_ns
+            whole_run = make_recording(
+                self._path, self._machine_yaml, *times, self._condition, self._settings, notes=late
+            )
+        return OnDemand(
+            self._machine_yaml,
+            Stamps(start_ns, self._cycle_ns),
+            self._units,
+            current=whole_run,
+            first_cycle=first_cycle,
+            settings=self._settings,
+            snapshots=self._snapshots,
+            publish=self._publish,
+        )
 
     def _on_block(self, unit: str, block_class: type, data: bytes) -> None:
         self._heard = time.monotonic()
@@ -264,17 +281,27 @@ class RecorderNode(PollingNode):
         if _namespace(deserialize_message(data, Log).name) == _namespace(self.get_logger().name):
             self._on_observed(ROSOUT, type_name(Log), data)
 
-    def _single(self, record: Callable[[Recording | NoRecording], None]) -> None:
+    def _single(self, record: Callable[[Sink], None]) -> None:
         self._heard = time.monotonic()
         self._keep(record)
 
-    def _keep(self, record: Callable[[Recording | NoRecording], None]) -> None:
+    def _keep(self, record: Callable[[Sink], None]) -> None:
         """Records it, or keeps it until the first tick has come."""
         if self._recording is None:
             self._early.append(lambda: self._keep(record))
             return
         for sink in self._sinks:
             record(sink)
+
+    @property
+    def _recorded(self) -> OnDemand:
+        assert self._recording is not None
+        return self._recording
+
+    @property
+    def _sinks(self) -> list[Sink]:
+        """The live stream and the recording, since the first tick."""
+        return [sink for sink in (self._live, self._recording) if sink is not None]
 
     def _look(self) -> None:
         """Takes the ticks and blocks that have come, and writes when it is time."""
@@ -285,35 +312,29 @@ class RecorderNode(PollingNode):
             sink.flush_if_due(time.monotonic())
 
 
-def require_writable(path: str) -> None:
-    """Raises CncError 26113 when no file can be made at `path`; an existing file is unchanged until the first tick."""
-    file = Path(os.path.realpath(path))  # a link is kept too
-    try:
-        exists = file.exists()
-        with file.open("ab"):
-            pass
-        if not exists:
-            file.unlink()
-    except OSError as error:
-        raise CncError(
-            NOT_WRITABLE, f"recording {path} cannot be written: {error.strerror}", "nothing was started"
-        ) from None
-
-
 def _namespace(logger: str) -> str:
     return logger.rpartition(".")[0]
 
 
 @click.command()
 @node_command_line.MACHINE
-@click.argument("output", type=click.Path(dir_okay=False), required=False)
+@click.argument("output", type=click.Path(), required=False)
 @click.option("--when", help="Begin when a field has this value: 'x.set_velocity != 0'.")
+@click.option("--split", help="Parts of a size or a time, 500MB or 10min; OUTPUT is a folder.")
+@click.option("--compression", type=click.Choice(COMPRESSIONS), default="zstd", help="Of the recording.")
+@click.option("--keep", type=float, default=0.0, help="Seconds that are kept in memory for a snapshot.")
+@click.option("--snapshots", type=click.Path(), help="Folder for a snapshot at each error.")
+@click.option("--snapshot-when", help="A snapshot also when this becomes true: 'x.following_error > 0.1'.")
+@click.option("--scenario", type=click.Path(), help="Kept in the recording.")
+@click.option("--plc", type=click.Path(), help="Kept in the recording.")
 @click.option("--foxglove", type=int, help="Port of a live stream for Foxglove.")
-def command(machine: str, output: str | None, when: str | None, foxglove: int | None) -> None:
-    """Records the graph of MACHINE to the MCAP file OUTPUT, without it only streams."""
+def command(machine: str, output: str | None, foxglove: int | None, **options: Any) -> None:
+    """Records the graph of MACHINE to the MCAP file OUTPUT, without it on demand."""
 
     def make() -> RecorderNode:
-        return RecorderNode(read_machine(machine), output, machine_text(machine), when=when, foxglove=foxglove)
+        given = RecorderOptions(**options)
+        text = machine_text(machine)
+        return RecorderNode(read_machine(machine), output, text, options=given, foxglove=foxglove)
 
     sys.exit(process.run_node(make, name=RECORDER, settled=lambda node: node.settled))
 

@@ -33,14 +33,14 @@ from cnc_ptp.nodes.forked import (
 )
 from cnc_ptp.nodes.live_stream import require_foxglove
 from cnc_ptp.nodes.monitor import SUPERVISOR, RunMonitor
-from cnc_ptp.nodes.recorder import require_writable
 from cnc_ptp.nodes.topics import MONITOR, RECORDER
 from cnc_ptp.nodes.unit.claim import require_free
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import Event, Severity
 from cnc_ptp.protocol.notes import Note
 from cnc_ptp.protocol.unit import PLC
-from cnc_ptp.recording.closing import close_cut
+from cnc_ptp.recording.closing import close_cut_recording
+from cnc_ptp.recording.recorder_options import FROM_THE_START, RecorderOptions
 from cnc_ptp.ros_arguments import ros_arguments
 from cnc_ptp.start_options import start_words
 
@@ -78,15 +78,16 @@ class RunOptions:
     """Where the program begins, if not at its beginning."""
     plc: str | None = None
     """A PLC in a file."""
-    record_when: str | None = None
-    """The condition with which the recording begins; without it with the run."""
+    recorder: RecorderOptions | None = None
+    """Of the recorder; without `record` it records on demand alone."""
     foxglove: int | None = None
     """Port of a live stream for Foxglove."""
 
     @property
-    def recorder(self) -> bool:
-        """A node records or streams."""
-        return self.record is not None or self.foxglove is not None
+    def recording(self) -> RecorderOptions | None:
+        """None: without a recorder, which also makes the live stream."""
+        needed = self.record is not None or self.foxglove is not None
+        return self.recorder or (FROM_THE_START if needed else None)
 
 
 class Supervisor:
@@ -287,7 +288,7 @@ class Supervisor:
         if self._options.record is None or closed or not self._monitor.cycle:
             return
         try:
-            close_cut(self._options.record)
+            close_cut_recording(self._options.record)
         except CncError as error:
             self.failures.append(str(error))
 
@@ -297,16 +298,15 @@ def command_lines(
 ) -> Iterator[tuple[str, list[str]]]:
     """Name and command line (executable first) of every node of a run; the clock waits for `observers` as well."""
     free_run = ["--free-run"] if options.free_run else []
-    units = ["--recorders", "1"] if options.recorder else []
+    units = ["--recorders", "1"] if options.recording else []
     units = [*units, "--state-rate", str(options.state_rate)] if options.state_rate is not None else units
     program = ["--program", options.program] if options.program else []
     program += ["--dialect", options.dialect] if options.program and options.dialect else []
     begin = [*start_words(options.begin)]
-    if options.recorder:
+    if options.recording:
         file = [options.record] if options.record else []
-        when = ["--when", options.record_when] if options.record_when else []
         live = ["--foxglove", str(options.foxglove)] if options.foxglove is not None else []
-        yield RECORDER, ["recorder", options.machine, *file, *when, *live]
+        yield RECORDER, ["recorder", options.machine, *file, *options.recording.words(), *live]
     for name, kind in unit_kinds(machine).items():
         if kind != "plc":
             first = program if options.begin is None and name == next(iter(machine.channels), None) else []
@@ -332,8 +332,8 @@ def only_run(options: RunOptions) -> Iterator[None]:
     process.initialise()
     try:
         with process.claim_domain():
-            if options.record is not None:
-                require_writable(options.record)
+            if options.recording is not None:
+                options.recording.require_places(options.record)
             if options.foxglove is not None:
                 require_foxglove(options.foxglove)
             yield
@@ -343,7 +343,7 @@ def only_run(options: RunOptions) -> Iterator[None]:
 
 def observers_of(options: RunOptions) -> list[str]:
     """Nodes besides the units that the clock waits for."""
-    return [MONITOR, *([RECORDER] if options.recorder else [])]
+    return [MONITOR, *([RECORDER] if options.recording else [])]
 
 
 def how_ended(status: int) -> str:

@@ -155,6 +155,9 @@ COUPLING_SERVICES: dict[str, Any] = {
 SERIES_SERVICES: dict[str, Any] = {"external_setpoints": srv.GiveExternalSetpoints}
 """Services of the axes by which the plc_bridge takes series of setpoints."""
 
+RECORDER_SERVICES: dict[str, Any] = {"start": srv.StartRecording, "stop": srv.Execute, "snapshot": srv.TakeSnapshot}
+"""Services of the recorder."""
+
 VALUE_TOPICS: dict[str, Any] = {
     "override": msg.Override,
     "feed_hold": msg.Switch,

@@ -9,15 +9,19 @@ from cnc_ptp.parameters import errors
 from cnc_ptp.parameters.check.machine_checks import check_machine
 from cnc_ptp.parameters.check.machine_notices import machine_notices, notices_without_view
 from cnc_ptp.parameters.declare import ids
+from cnc_ptp.parameters.declare.declarations import ParameterValue
 from cnc_ptp.parameters.errors import ParameterError, Place, Problem
 from cnc_ptp.parameters.read.machine_sections import read_parameters
 from cnc_ptp.parameters.read.messages import Notice
 from cnc_ptp.parameters.read.named_files import named_files, split_files, with_files
 from cnc_ptp.parameters.read.offset_files import with_offsets
-from cnc_ptp.parameters.read.parameter_set import ParameterSet
+from cnc_ptp.parameters.read.parameter_set import Given, ParameterSet
 from cnc_ptp.parameters.read.tool_file import with_tools
 from cnc_ptp.parameters.view.channel_members import Sets, axis_entries, rotary_axes
 from cnc_ptp.parameters.view.machine_view import MachineParameters, machine_view
+
+Changes = Mapping[str, Mapping[str, ParameterValue]]
+NO_CHANGES: Changes = {}
 
 
 def read_machine(path: str | Path) -> MachineParameters:
@@ -60,13 +64,18 @@ def read_text(path: Path, place: Place, what: str) -> str:
         raise ParameterError([Problem(errors.UNREADABLE, place, f"{what} cannot be read, {reason}")]) from error
 
 
-def load_machine(text: str, file: str, origin: Callable[[Place], Place] | None = None) -> MachineParameters:
+def load_machine(
+    text: str, file: str, origin: Callable[[Place], Place] | None = None, changes: Changes = NO_CHANGES
+) -> MachineParameters:
     """The machine that the text of `machine_text` describes; `file` is for messages. Raises ParameterError.
 
-    `origin` gives the place that messages name instead of one in the text, if that was made of other files.
+    `origin` gives the place that messages name instead of one in the text, if that was made of other files. `changes`:
+    checked values by node and ROS name that count instead of those of the text.
     """
     text, files = split_files(text)
     machine, sets, problems = read_parameters(text, file)
+    machine = changed_values(machine, changes.get("machine", {}))
+    sets = {node: changed_values(parameters, changes.get(node, {})) for node, parameters in sets.items()}
     if origin:
         sets = {node: placed(parameters, origin) for node, parameters in sets.items()}
     for node, parameters in sets.items():
@@ -76,6 +85,14 @@ def load_machine(text: str, file: str, origin: Callable[[Place], Place] | None =
     if problems:
         raise ParameterError(problems)
     return machine_view(machine, sets, tuple(machine_notices(machine, sets)), Path(file).parent)
+
+
+def changed_values(parameters: ParameterSet, values: Mapping[str, ParameterValue]) -> ParameterSet:
+    """The parameters with other values of some; their places stay those of the file."""
+    given = dict(parameters.given)
+    for name, value in values.items():
+        given[name] = Given(value, given[name].place if name in given else parameters.place)
+    return replace(parameters, given=given) if values else parameters
 
 
 def placed(parameters: ParameterSet, origin: Callable[[Place], Place]) -> ParameterSet:

@@ -96,9 +96,13 @@ class AxisGroups:
                 master = master_in(command)
                 if master is not None:
                     above = block.above(master)
-                    stands = self._stands(master) and not block.started & {master, *above}
-                    group = {"above": above, "master_stands": stands, "master_lost": master in lost}
-                    command.arguments = {**command.arguments, **group}
+                    command.arguments = {
+                        **command.arguments,
+                        "above": above,
+                        "master_stands": self._stands(master),
+                        "master_start": block.start_of(master, *above),
+                        "master_lost": master in lost,
+                    }
                 block.add(command)
         self._masters = block.masters
         return block.completed + list(self._lead_commands()), block.waiting
@@ -131,7 +135,8 @@ class CommandsOfBlock:
         """`masters`: slave -> master, as the axes have reported."""
         self.masters = dict(masters)
         """The same when all of these commands are carried out."""
-        self.started: set[str] = set()
+        self._started: dict[str, str] = {}
+        """Axes that may start in this block -> by which command."""
         self.completed: list[Command] = []
         self.waiting: list[Command] = []
         self._waiting_axes: set[str] = set()
@@ -142,6 +147,10 @@ class CommandsOfBlock:
     def above(self, master: str) -> list[str]:
         """All masters above `master` when each coupling that there was, or may come, holds."""
         return reachable(self._possible, master)
+
+    def start_of(self, *axes: str) -> str:
+        """The command that may start one of these axes, as text; empty without one."""
+        return next((f"{self._started[axis]} of {axis}" for axis in axes if axis in self._started), "")
 
     def must_wait(self, command: Command) -> bool:
         """Keeps back a coupling that runs in a circle only if others of this block are carried out, or refused.
@@ -171,7 +180,7 @@ class CommandsOfBlock:
         axis, master = command.target, master_in(command)
         self.completed.append(command)
         if starts(command):
-            self.started.add(axis)
+            self._started.setdefault(axis, command.command)
         elif master is not None and axis != master and axis not in self.above(master):
             self._possible.setdefault(axis, []).append(master)
             self.masters[axis] = master

@@ -30,6 +30,7 @@ from cnc_ptp.protocol.blocks import (
     SpindleBlock,
 )
 from cnc_ptp.protocol.commands import BAD_ARGUMENT
+from cnc_ptp.protocol.notes import PLC_MESSAGE
 from cnc_ptp.protocol.unit import EMERGENCY_HOLDS, EMERGENCY_STOP, UPSTREAM_LOST, Unit
 
 NOTHING_TO_ACKNOWLEDGE = 22013
@@ -343,7 +344,7 @@ class PlcUnit(Unit):
         cycle = tick.first_cycle
         fault = self.program.run(tick, inputs, self._lost)
         for text in self.program.io.take_events():
-            self.event(cycle, Severity.INFO, 0, f"plc {self.name}: {text}")
+            self.event(cycle, Severity.INFO, PLC_MESSAGE, f"plc {self.name}: {text}")
         for command in self.program.io.take_commands():
             if command.target == self.name:
                 self.command(command, cycle)

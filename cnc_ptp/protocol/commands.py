@@ -22,6 +22,7 @@ class Argument:
 
     `positive`: only a number above 0 makes sense, so that 0 in a service means that it is left out.
     `lenient`: the command is carried out with any value and reports the one it uses.
+    `field`: type of an integer in its service.
     """
 
     kind: str
@@ -29,12 +30,16 @@ class Argument:
     choices: tuple[str, ...] = ()
     positive: bool = False
     lenient: bool = False
+    field: str = "int64"
 
 
 Arguments = Mapping[str, Argument]
 NUMBER = Argument("number")
 OPTIONAL_NUMBER = Argument("number", required=False)
 INTEGER = Argument("integer")
+UINT8 = Argument("integer", field="uint8")
+UINT32 = Argument("integer", field="uint32")
+UINT64 = Argument("integer", field="uint64")
 SWITCH = Argument("switch")
 TEXT = Argument("text")
 OPTIONAL_TEXT = Argument("text", required=False)
@@ -60,9 +65,10 @@ COUPLING: Arguments = {
     "master": TEXT,
     "above": Argument("rows", required=False),
     "master_stands": OPTIONAL_SWITCH,
+    "master_start": OPTIONAL_TEXT,
     "master_lost": OPTIONAL_SWITCH,
 }
-"""A master, and what the PLC fills in: the master's masters, whether it is at a standstill, whether it is lost."""
+"""A master, and what the PLC fills in: its masters, whether it stands, what may start it in this block, is it lost."""
 
 OVERLAY: Arguments = {
     "control_unit": TEXT,
@@ -89,7 +95,7 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "halt_superimposed": {},
         "set_position": {"position": NUMBER, "relative": OPTIONAL_SWITCH},
         "set_override": {"percent": NUMBER},
-        "set_override_type": {"type": INTEGER},
+        "set_override_type": {"type": UINT8},
         "stop": {},
         "hold_stop": {"enabled": SWITCH},
         "halt": {},
@@ -210,17 +216,17 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "block_skip": {"enabled": SWITCH, "level": OPTIONAL_COUNT},
         "reset": {},
         "mdi": {"text": TEXT, "files": Argument("files", required=False)},
-        "acknowledge": {"id": INTEGER},
+        "acknowledge": {"id": UINT64},
         "measuring_event": {},
-        "set_zero_offset": {"index": INTEGER, "axis": TEXT, "value": NUMBER},
-        "teach_zero_offset": {"index": INTEGER, "axis": OPTIONAL_TEXT, "value": OPTIONAL_NUMBER},
-        "set_clamp_position": {"index": INTEGER},
+        "set_zero_offset": {"index": UINT32, "axis": TEXT, "value": NUMBER},
+        "teach_zero_offset": {"index": UINT32, "axis": OPTIONAL_TEXT, "value": OPTIONAL_NUMBER},
+        "set_clamp_position": {"index": UINT32},
         "overlay": OVERLAY,
         "set_emergency_stop": {"enabled": SWITCH},
         "upstream_lost": SOURCE,
     },
     "plc": {
-        "acknowledge": {"id": INTEGER},
+        "acknowledge": {"id": UINT64},
         "auto_acknowledge": {"enabled": SWITCH},
         "set_life_sign": {"enabled": SWITCH},
         "set_input": {"name": TEXT, "value": NUMBER},
@@ -286,7 +292,7 @@ THROUGH_PLC = COUPLINGS | {"change_cam", "external_setpoints"}
 """Commands of axes that go through the PLC: it sees all axes, and sends setpoints with the blocks of their cycles."""
 NEEDS_SOMETHING = {"set_limits": "reset_limits takes the limits away"}
 """Commands that would release something when nothing is given, and how to do so explicitly."""
-OF_PLC = frozenset({"above", "master_stands", "master_lost"})
+OF_PLC = frozenset({"above", "master_stands", "master_start", "master_lost"})
 """Arguments of couplings that the PLC fills in; only a refusal can come of them, so that they are not recorded."""
 OF_CHANNELS = frozenset({"own", "homes", "owner", "by_path"})
 """Arguments that only channels give; neither services nor scenarios have them."""
@@ -306,6 +312,9 @@ TYPES = {
     "files": dict,
     "source": str,
 }
+
+INTEGER_RANGES = {"int64": (-(2**63), 2**63 - 1)} | {f"uint{bits}": (0, 2**bits - 1) for bits in (8, 32, 64)}
+"""Type of a field -> least and largest integer that it holds."""
 
 TYPE_TEXTS = {"integer": "an integer", "rows": "a list of rows", "files": "texts by file name"}
 """What an argument must be, where its kind with an article is no English."""
@@ -373,8 +382,16 @@ def check_arguments(
 
 
 def check_sendable(where: str, specification: Arguments, arguments: Mapping[str, Any]) -> None:
-    """A service takes a 0 that makes no sense for left out, and texts of UTF-8 only. Raises CncError 22001."""
+    """Raises CncError 22001 for what a service would take for something else.
+
+    A 0 that makes no sense is left out there, an integer beyond its field wraps around, texts are of UTF-8 only.
+    """
     for name, value in arguments.items():
+        if specification[name].kind == "integer":
+            low, high = INTEGER_RANGES[specification[name].field]
+            if not low <= value <= high:
+                reason = f"{name} = {value} is not within {low} ... {high}"
+                raise CncError(BAD_ARGUMENT, reason, "nothing was sent", where=where)
         if specification[name].positive and value == 0.0:
             raise CncError(BAD_ARGUMENT, f"{name} = 0 must be greater than 0", "nothing was sent", where=where)
         if isinstance(value, str) and value != value.encode(errors="ignore").decode():

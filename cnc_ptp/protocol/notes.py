@@ -13,10 +13,13 @@ from cnc_ptp.protocol.commands import READING
 
 PROGRAM_MESSAGE = 22028
 """Event of #MSG."""
+PLC_MESSAGE = 22054
+"""Event of a PLC in a file (`io.event`)."""
 START_STEP = 22045
 """Event: what is done at the start of a program that does not begin at its beginning."""
 MEASURED = 22050
 """Event: what a measuring run has measured."""
+MESSAGES = (PROGRAM_MESSAGE, START_STEP, MEASURED, PLC_MESSAGE)
 ORDERED_ERROR = 22029
 """Warning or error of #ERROR."""
 NOTHING_TO_STOP = 23073
@@ -25,7 +28,7 @@ NOTHING_TO_STOP = 23073
 
 @dataclass(frozen=True, slots=True)
 class Note:
-    """A refused command, a message of a program, or a warning: of an event, or of a command that was carried out."""
+    """A refused command, a message of a program or PLC, or a warning: an event, or of a command carried out."""
 
     number: int
     text: str
@@ -33,7 +36,7 @@ class Note:
     idle_stop: bool = False
     """A stop of an axis that is at a standstill already."""
     message_at: int | None = None
-    """Cycle of a message of an NC program: each one counts."""
+    """Cycle of a message: each one counts."""
 
     def __str__(self) -> str:
         if self.message_at is not None:
@@ -55,8 +58,8 @@ class Note:
 
     @classmethod
     def of_event(cls, event: Any) -> Note | None:
-        """`event`: an Event or its message; None for one that is neither a warning nor a message of a program."""
-        if event.severity == Severity.INFO and event.error_id in (PROGRAM_MESSAGE, START_STEP, MEASURED):
+        """`event`: an Event or its message; None for one that is neither a warning nor a message."""
+        if event.severity == Severity.INFO and event.error_id in MESSAGES:
             return cls(event.error_id, event.text, message_at=event.cycle)
         return cls(event.error_id, event.text) if event.severity == Severity.WARNING else None
 

@@ -11,6 +11,7 @@ from mcap.writer import MCAP0_MAGIC
 from cnc_ptp.recording.bag import RECORD
 from cnc_ptp.recording.mcap_chunks import McapRecords, MessageRun, RawRecord
 from cnc_ptp.recording.mcap_file import METADATA, MISSING, RECORD_PREFIX, Contents, McapFile, count_chunk
+from cnc_ptp.recording.parts import describe_folder, numbered_parts
 
 
 def close_cut(path: str | Path) -> str:
@@ -32,6 +33,16 @@ def close_cut(path: str | Path) -> str:
         survey.write_last_chunk(file)
         file.metadata(METADATA, {MISSING: records.missing})
     return records.missing
+
+
+def close_cut_recording(path: str | Path) -> str:
+    """close_cut for a file, or for the parts of a folder, whose `metadata.yaml` then lists all of them."""
+    folder = Path(path)
+    if not folder.is_dir():
+        return close_cut(path)
+    missing = "; ".join(filter(None, [close_cut(part) for part in numbered_parts(folder, folder.stem)]))
+    describe_folder(folder)
+    return missing
 
 
 class _Survey:

@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 from mcap.opcode import Opcode
 
+from cnc_ptp.recording.bag import FILE
 from cnc_ptp.recording.mcap_chunks import MessageRun, RawRecord
 from cnc_ptp.recording.mcap_index import ChunkPlace, McapIndex
 from cnc_ptp.recording.opened import WORKERS, ahead
@@ -33,6 +34,7 @@ from cnc_ptp.recording.reader import (
     Reader,
     Recorded,
     Reduced,
+    is_kept,
     read_recording,
 )
 from cnc_ptp.recording.selection import NEAR_CYCLES
@@ -93,7 +95,7 @@ def read_for_report(
     Events, commands and attachments are those of the whole file. Raises CncError 26001 to 26005.
     """
     path = Path(path)
-    if not path.is_file() or (path.stat().st_size < SMALL and most_states == MOST_STATES):
+    if not path.is_file() or path.name == FILE or (path.stat().st_size < SMALL and most_states == MOST_STATES):
         return read_recording(path)
     index = McapIndex(path)
     try:
@@ -103,11 +105,12 @@ def read_for_report(
 
 
 def _read(index: McapIndex, begin: float | None, end: float | None, most_states: int) -> Recorded:
-    reader = Reader(index)
+    reader = Reader(index.path)
+    reader.begin(index)
     for metadata in index.metadata:
         reader.metadata(metadata)
-    for offset in index.attachments:
-        reader.take(index.record(offset))
+    for name in filter(is_kept, index.attachments):
+        reader.attachment(name, index.attached(name))
     for schema in index.schemas.values():
         reader.names.add(schema)
     for channel in index.channels.values():
@@ -120,7 +123,8 @@ def _read(index: McapIndex, begin: float | None, end: float | None, most_states:
     few = count * len(chunks) <= most_states * max(1, len(index.chunks))
     if few:
         _feed(reader, index, {*states, *_ids(index, (THREAD_STATE,))}, chunks)
-    recorded = reader.finish(complete=index.indexed, missing="" if index.indexed else NOT_CLOSED)
+    reader.end_of_file("" if index.indexed else NOT_CLOSED)
+    recorded = reader.finish()
     _count_topics(reader, index)
     if not few:
         _reduce(recorded, index, chunks, window)

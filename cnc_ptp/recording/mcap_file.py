@@ -12,14 +12,15 @@ import contextlib
 import struct
 import zlib
 from collections import deque
+from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import TracebackType
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import zstandard
 from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
 from mcap.records import (
@@ -43,6 +44,7 @@ from mcap.writer import LIBRARY_IDENTIFIER, MCAP0_MAGIC
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.recording.bag import RECORD, bag_information, forget_beside, metadata_text, write_beside
+from cnc_ptp.recording.settings import compressor
 from cnc_ptp.wire.layout import Bytes
 
 NOT_WRITTEN = 26007
@@ -90,12 +92,25 @@ class McapFile:
     could not be written; it is cut back to the last whole record, and `close` still tries to give it a summary.
     """
 
-    def __init__(self, path: Path, level: int = 1, *, found: Contents | None = None) -> None:
-        """Starts a file, or continues one after what was `found` in it; all after that is cut off."""
+    def __init__(
+        self,
+        path: Path,
+        level: int = 1,
+        *,
+        found: Contents | None = None,
+        compression: str = "zstd",
+        describe: Callable[[Path, dict[str, Any]], None] = write_beside,
+    ) -> None:
+        """Starts a file, or continues one after what was `found` in it; all after that is cut off.
+
+        `compression`: of Settings. `describe`: writes the metadata of rosbag2 when the file is closed.
+        """
         self.path = path
+        self._describe = describe
+        self._compression = "" if compression == "none" else compression
         contents = found or Contents()
         self.statistics = contents.statistics
-        self._compressor = zstandard.ZstdCompressor(level=level)
+        self._compressor = compressor(compression, level)
         self._offset = contents.end
         self._crc = contents.crc
         self._schemas = contents.schemas
@@ -124,6 +139,11 @@ class McapFile:
             self._write(MCAP0_MAGIC)
             self._record(Header("ros2", f"cnc_ptp {LIBRARY_IDENTIFIER}"))
             self._flush()
+
+    @property
+    def size(self) -> int:
+        """Bytes of what was written, without the chunks that are being compressed."""
+        return self._offset
 
     @property
     def failed(self) -> bool:
@@ -209,7 +229,7 @@ class McapFile:
     def _write_chunk(self, chunk: _OpenChunk, compressed: bytes, crc: int) -> None:
         first, last = chunk.time_range()
         start = self._offset
-        self._record(Chunk("zstd", compressed, last, first, crc, chunk.size))
+        self._record(Chunk(self._compression, compressed, last, first, crc, chunk.size))
         end = self._offset
         index_offsets: dict[int, int] = {}
         for channel_id, entries in chunk.indexes.items():
@@ -220,7 +240,7 @@ class McapFile:
             ChunkIndex(
                 chunk_length=end - start,
                 chunk_start_offset=start,
-                compression="zstd",
+                compression=self._compression,
                 compressed_size=len(compressed),
                 message_end_time=last,
                 message_index_length=self._offset - end,
@@ -263,7 +283,7 @@ class McapFile:
         self._record(DataEnd(self._crc))
         self._write_summary()
         self._flush()
-        write_beside(self.path, information)
+        self._describe(self.path, information)
 
     def __enter__(self) -> McapFile:
         return self
@@ -275,15 +295,7 @@ class McapFile:
 
     def _compress(self, chunk: _OpenChunk) -> tuple[bytes, int]:
         """The records of a chunk compressed, part by part, and their crc; the parts are given free."""
-        compression = self._compressor.compressobj(size=chunk.size)
-        compressed, crc = [], 0
-        parts, chunk.parts = chunk.parts[::-1], []
-        while parts:
-            part = parts.pop()
-            compressed.append(compression.compress(part))
-            crc = zlib.crc32(part, crc)
-        compressed.append(compression.flush())
-        return b"".join(compressed), crc
+        return self._compressor(chunk.parts, chunk.size)
 
     def _write_summary(self) -> None:
         self.statistics.schema_count = len(self._schemas)

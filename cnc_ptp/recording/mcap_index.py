@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 from mcap.opcode import Opcode
-from mcap.records import AttachmentIndex, Channel, Footer, Metadata, MetadataIndex, Schema, Statistics
+from mcap.records import Attachment, AttachmentIndex, Channel, Footer, Metadata, MetadataIndex, Schema, Statistics
 from mcap.writer import MCAP0_MAGIC
 
 from cnc_ptp.recording.mcap_chunks import MessageRun, RawRecord, RecordReader
@@ -55,8 +55,8 @@ class McapIndex(RecordReader):
         self.counts: dict[int, int] = {}
         """Messages by channel."""
         self.metadata: list[Metadata] = []
-        self.attachments: list[int] = []
-        """Where their records begin."""
+        self.attachments: dict[str, int] = {}
+        """Offsets by name."""
         try:
             self._file = os.open(path, os.O_RDONLY)
             self._size = os.fstat(self._file).st_size
@@ -80,6 +80,11 @@ class McapIndex(RecordReader):
     def ids_of(self, topic: str) -> set[int]:
         """The channels of a topic."""
         return {id for id, channel in self.channels.items() if channel.topic == topic}
+
+    def attached(self, name: str) -> bytes:
+        """The content of an attachment that the file has."""
+        record: Attachment = self.attachment(self.record(self.attachments[name]))
+        return record.data
 
     def runs(self, place: ChunkPlace, channels: Collection[int]) -> Iterator[MessageRun]:
         """The messages of some channels in a chunk, in the order of their log times as far as it has an index."""
@@ -135,7 +140,7 @@ class McapIndex(RecordReader):
         return self.parse(Footer.read, record).summary_start or None
 
     def _read_summary(self, start: int) -> None:
-        for record in self._records(start):
+        for record in self._summary_records(start):
             self._take_name(record)
             if record.opcode == Opcode.STATISTICS:
                 self.counts = self.parse(Statistics.read, record).channel_message_counts
@@ -145,7 +150,8 @@ class McapIndex(RecordReader):
                 place = self.parse(MetadataIndex.read, record)
                 self.metadata.append(self.parse(Metadata.read, self.record(place.offset)))
             elif record.opcode == Opcode.ATTACHMENT_INDEX:
-                self.attachments.append(self.parse(AttachmentIndex.read, record).offset)
+                attachment = self.parse(AttachmentIndex.read, record)
+                self.attachments[attachment.name] = attachment.offset
 
     def _chunk_place(self, record: RawRecord) -> ChunkPlace:
         try:
@@ -158,18 +164,30 @@ class McapIndex(RecordReader):
 
     def _scan(self) -> None:
         """All whole records of a file without a list of its chunks, which are uncompressed for their channels."""
-        self.counts, self.metadata, self.attachments = {}, [], []
+        self.counts, self.metadata, self.attachments = {}, [], {}
         for record in self._records(len(MCAP0_MAGIC)):
             self._take_name(record)
             if record.opcode == Opcode.METADATA:
                 self.metadata.append(self.parse(Metadata.read, record))
             elif record.opcode == Opcode.ATTACHMENT:
-                self.attachments.append(record.offset)
+                self.attachments[self.attachment(record).name] = record.offset
             elif record.opcode == Opcode.CHUNK:
                 first, last = struct.unpack_from("<QQ", record.body)
                 self.chunks.append(ChunkPlace(first, last, record.offset, len(record.body), NO_INDEX))
                 for item in self.in_chunk(record):
                     self._count(item)
+
+    def _summary_records(self, start: int) -> Iterator[RawRecord]:
+        """They are many and small: one call reads all."""
+        data = memoryview(self._bytes(start, self._size - start))
+        offset = 0
+        while offset + RECORD_PREFIX.size <= len(data):
+            opcode, length = RECORD_PREFIX.unpack_from(data, offset)
+            begin = offset + RECORD_PREFIX.size
+            if opcode == Opcode.FOOTER or length > len(data) - begin:
+                return
+            yield RawRecord(start + offset, opcode, data[begin : begin + length])
+            offset = begin + length
 
     def _records(self, offset: int) -> Iterator[RawRecord]:
         """The whole records from an offset on."""

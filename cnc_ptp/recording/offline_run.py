@@ -11,9 +11,11 @@ from cnc_ptp.machine.offline import OfflineMachine, Outputs
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import CycleTick
 from cnc_ptp.protocol.unit import PLC, Unit
+from cnc_ptp.recording.checkpoints import CHECKPOINT_SECONDS, Checkpoints
 from cnc_ptp.recording.mcap_file import NOT_WRITTEN
+from cnc_ptp.recording.settings import Settings
 from cnc_ptp.recording.trigger import Condition, TriggeredRecording, make_recording
-from cnc_ptp.recording.writer import Recording
+from cnc_ptp.recording.writer import AS_USUAL, Recording
 
 
 class OfflineRun:
@@ -33,16 +35,22 @@ class OfflineRun:
         record: str | None = None,
         machine_text: str = "",
         condition: Condition | None = None,
+        settings: Settings = AS_USUAL,
+        checkpoint_seconds: float = CHECKPOINT_SECONDS,
     ) -> None:
         """`units` in the order of computation; `machine_text` is kept in the recording `record`.
 
-        `condition`: with which the recording begins; None: at once.
+        `condition`: with which the recording begins; None: at once. `checkpoint_seconds` of machine time between two
+        checkpoints; 0: none.
         """
         self.machine = OfflineMachine(parameters, units)
         cycle_time_ns = parameters.cycle_time_us * 1000
         self._recording: Recording | None = None
         if record is not None:
-            self._recording = make_recording(record, machine_text, 0, cycle_time_ns, condition)
+            self._recording = make_recording(record, machine_text, 0, cycle_time_ns, condition, settings)
+        self._checkpoints: Checkpoints | None = None
+        if self._recording is not None and checkpoint_seconds > 0.0:
+            self._checkpoints = Checkpoints(self._recording, parameters, checkpoint_seconds)
 
     def step(self) -> Outputs:
         """The next block of all units."""
@@ -51,6 +59,11 @@ class OfflineRun:
     def run(self, *, cycles: int | None = None) -> Iterator[Outputs]:
         """Block by block to the end of the run, as OfflineMachine.run."""
         return map(self._recorded, self.machine.run(cycles=cycles))
+
+    @property
+    def checkpoint_fault(self) -> str:
+        """From when on there is no checkpoint, why, and what that means; empty if none is missing."""
+        return "" if self._checkpoints is None else self._checkpoints.fault
 
     @property
     def waits_for_trigger(self) -> bool:
@@ -66,6 +79,8 @@ class OfflineRun:
         if self._recording is not None and self.failure is None:
             with self._going_on():
                 write(self._recording, outputs)
+                if self._checkpoints is not None and not self.waits_for_trigger:
+                    self._checkpoints.watch(self.machine)
         return outputs
 
     @contextmanager

@@ -17,14 +17,13 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
-import yaml
 
-from cnc_ptp import yaml_text
 from cnc_ptp.errors import CncError
-from cnc_ptp.recording.bag import FILE, INFORMATION
 from cnc_ptp.recording.mcap_file import METADATA
 from cnc_ptp.recording.mcap_index import ChunkPlace, McapIndex
 from cnc_ptp.recording.message_fields import Column, MessageFields
+from cnc_ptp.recording.origin import require_known_format
+from cnc_ptp.recording.parts import files_of
 from cnc_ptp.recording.selection import NOT_RECORDED, asked_time, nearest
 from cnc_ptp.wire.schemas import full_name
 
@@ -32,7 +31,6 @@ if TYPE_CHECKING:
     import pandas
 
 NO_PACKAGE = 26013
-NO_BAG = 26014
 TIME, LOG_TIME = "time", "log_time"
 """Columns that every topic has: s of the recording; ns as the file has it."""
 HEADER = "header."
@@ -99,6 +97,7 @@ class OpenRecording:
         for file in self._files:
             for metadata in file.metadata:
                 if metadata.name == METADATA:
+                    require_known_format(self.path, metadata.metadata)
                     self.metadata = {**metadata.metadata, **self.metadata}
         first = min((chunk.first_ns for file in self._files for chunk in file.chunks), default=0)
         self.start_ns = int(self.metadata.get("start_ns", first))
@@ -143,6 +142,13 @@ class OpenRecording:
         names = self._names(topic, fields)
         self._require_pieces(topic, start, end)
         return (part for part in self._parts(topic, names, start, end) if len(part[names[0]]))
+
+    def attached(self, name: str) -> str:
+        """The text of an attachment, `machine.yaml`. Raises CncError 26011 where there is none of this name."""
+        for file in self._files:
+            if name in file.attachments:
+                return file.attached(name).decode(errors="replace")
+        raise self._missing(f"holds no attachment '{name}'")
 
     def close(self) -> None:
         self._workers.shutdown()
@@ -260,27 +266,13 @@ class OpenRecording:
         return {name: result[name] for name in names}
 
 
-def files_of(path: Path) -> list[Path]:
-    """The file, or those that the `metadata.yaml` of a folder lists. Raises CncError 26002 for other folders."""
-    if not path.is_dir():
-        return [path]
-    try:
-        text = (path / FILE).read_text(encoding="utf-8")
-        return [path / name for name in yaml_text.load(text)[INFORMATION]["relative_file_paths"]]
-    except (OSError, UnicodeDecodeError, yaml.YAMLError, TypeError, KeyError):
-        raise CncError(
-            NO_BAG, f"recording {path}: a folder without a {FILE} of rosbag2", f"{NOTHING}, give a file of the folder"
-        ) from None
-
-
-def package(name: str) -> Any:
-    """A package that is needed for tables only. Raises CncError 26013 where it is not installed."""
+def package(name: str, effect: str = "") -> Any:
+    """A package that not all commands need. Raises CncError 26013, with the `effect`, where it is not installed."""
     try:
         return import_module(name)
     except ImportError:
-        raise CncError(
-            NO_PACKAGE, f"{name} is not installed", f"{NOTHING}, install it with: pip install {name}"
-        ) from None
+        remedy = effect if effect else f"{NOTHING}, install it with: pip install {name}"
+        raise CncError(NO_PACKAGE, f"{name} is not installed", remedy) from None
 
 
 def ahead(workers: ThreadPoolExecutor, call: Callable[[Item], Result], items: Iterable[Item]) -> Iterator[Result]:

@@ -19,7 +19,9 @@ from cnc_ptp.protocol.event_values import read_event_values
 from cnc_ptp.recording.bag import QOS
 from cnc_ptp.recording.mcap_chunks import McapRecords, MessageRun, RawRecord, RecordReader
 from cnc_ptp.recording.mcap_file import METADATA, MISSING
-from cnc_ptp.recording.writer import MACHINE_FILE
+from cnc_ptp.recording.origin import require_known_format
+from cnc_ptp.recording.parts import files_of
+from cnc_ptp.recording.writer import CHECKPOINT, CHECKPOINT_TEXT, MACHINE_FILE
 from cnc_ptp.wire.layout import Layout, Records, fixed_layout
 from cnc_ptp.wire.schemas import full_name, parse_schema
 
@@ -167,21 +169,25 @@ class Recorded:
 
 
 def read_recording(path: str | Path) -> Recorded:
-    """Reads everything that is whole in a file. Raises CncError 26001 to 26005 (see McapRecords, schemas)."""
-    records = McapRecords(Path(path))
-    reader = Reader(records)
-    for record in records:
-        reader.take(record)
-    return reader.finish(complete=records.complete, missing=records.missing)
+    """Reads everything that is whole in a file, or in the parts of a folder.
+
+    Raises CncError 26001 to 26005 (see McapRecords, schemas), 26014 and 26016.
+    """
+    reader = Reader(Path(path))
+    for file in files_of(Path(path)):
+        records = McapRecords(file)
+        reader.begin(records)
+        for record in records:
+            reader.take(record)
+        reader.end_of_file(records.missing)
+    return reader.finish()
 
 
 def iter_messages(path: str | Path, topics: Collection[str] | None = None) -> Iterator[RawMessage]:
     """All whole messages in log-time order, as bytes; of the given topics only. Same errors as read_recording."""
-    records = McapRecords(Path(path))
-    names = _Names(records)
     waiting: list[tuple[int, int, RawMessage]] = []
     serial = 0
-    for record in records:
+    for records, names, record in _all_records(Path(path)):
         names.take(record)
         if record.opcode != Opcode.CHUNK:
             continue
@@ -198,6 +204,14 @@ def iter_messages(path: str | Path, topics: Collection[str] | None = None) -> It
         yield heapq.heappop(waiting)[2]
 
 
+def _all_records(path: Path) -> Iterator[tuple[McapRecords, _Names, RawRecord]]:
+    """Of a file, or of the parts of a folder one after another."""
+    for file in files_of(path):
+        records = McapRecords(file)
+        names = _Names(records, {})
+        yield from ((records, names, record) for record in records)
+
+
 def _raw_messages(info: TopicInfo, run: MessageRun) -> Iterator[RawMessage]:
     for time, content in zip(run.head["log_time"].tolist(), run.contents, strict=True):
         yield RawMessage(info.topic, info.type_name, time, content.tobytes())
@@ -206,12 +220,13 @@ def _raw_messages(info: TopicInfo, run: MessageRun) -> Iterator[RawMessage]:
 class _Names:
     """Schemas and channels of a file as they are read."""
 
-    def __init__(self, records: RecordReader) -> None:
+    def __init__(self, records: RecordReader, by_name: dict[str, TopicInfo]) -> None:
+        """`by_name`: topics of the files before, to which those of this file are added."""
         self.records = records
         self.schemas: dict[int, Schema] = {}
         self.channels: dict[int, Channel] = {}
         self.topics: dict[int, TopicInfo] = {}
-        self.by_name: dict[str, TopicInfo] = {}
+        self.by_name = by_name
 
     def take(self, record: RawRecord) -> None:
         if record.opcode == Opcode.SCHEMA:
@@ -239,12 +254,15 @@ class _Names:
 
 
 class Reader:
-    """Collects the contents of the records of a file."""
+    """Collects the contents of the records of files, one after another."""
 
-    def __init__(self, records: RecordReader) -> None:
-        self.records = records
-        self.names = _Names(records)
-        self.recorded = Recorded(records.path)
+    records: RecordReader
+    names: _Names
+
+    def __init__(self, path: Path) -> None:
+        self._by_name: dict[str, TopicInfo] = {}
+        self._missing: list[str] = []
+        self.recorded = Recorded(path)
         self._layouts: dict[str, Layout] = {}
         self._rows: dict[str, list[npt.NDArray[np.uint8]]] = {}
         self._decoders = DecoderFactory()
@@ -254,6 +272,16 @@ class Reader:
             DIAGNOSTICS: self._diagnostics,
             OFFSETS: self._offsets,
         }
+
+    def begin(self, records: RecordReader) -> None:
+        """The records that come are those of another file."""
+        self.records = records
+        self.names = _Names(records, self._by_name)
+
+    def end_of_file(self, missing: str) -> None:
+        """`missing`: what the file lacks, if anything."""
+        if missing:
+            self._missing.append(missing)
 
     def take(self, record: RawRecord) -> None:
         self.names.take(record)
@@ -265,20 +293,25 @@ class Reader:
                     self.names.add(item)
         elif record.opcode == Opcode.ATTACHMENT:
             attachment = self.records.attachment(record)
-            self.recorded.attachments[attachment.name] = attachment.data.decode(errors="replace")
+            self.attachment(attachment.name, attachment.data)
         elif record.opcode == Opcode.METADATA:
             self.metadata(self.records.parse(Metadata.read, record))
 
     def metadata(self, metadata: Metadata) -> None:
         if metadata.name == METADATA:
+            require_known_format(self.recorded.path, metadata.metadata)
             self.recorded.metadata.update(metadata.metadata)
 
-    def finish(self, *, complete: bool, missing: str) -> Recorded:
+    def attachment(self, name: str, data: bytes) -> None:
+        if is_kept(name):
+            self.recorded.attachments[name] = data.decode(errors="replace")
+
+    def finish(self) -> Recorded:
         recorded = self.recorded
-        recorded.missing = recorded.metadata.get(MISSING, missing)
-        recorded.complete = complete and not recorded.missing
+        recorded.missing = recorded.metadata.get(MISSING, "; ".join(self._missing))
+        recorded.complete = not recorded.missing
         recorded.machine_yaml = recorded.attachments.pop(MACHINE_FILE, "")
-        recorded.topics = {topic: info for topic, info in self.names.by_name.items() if info.count}
+        recorded.topics = {topic: info for topic, info in self._by_name.items() if info.count}
         for topic, rows in self._rows.items():
             self._store(recorded.topics[topic], self._layouts[topic].read(np.concatenate(rows).reshape(-1)))
         recorded.events.sort(key=lambda event: event.cycle)
@@ -338,21 +371,7 @@ class Reader:
         )
 
     def _command(self, _time: int, _topic: str, message: Any) -> None:
-        self.recorded.commands.append(
-            CommandRecord(
-                message.cycle,
-                message.target,
-                message.command,
-                message.arguments_json,
-                message.accepted,
-                message.error_id,
-                message.message,
-                getattr(message, "id", 0),
-                read_values(getattr(message, "values_json", "")),
-                getattr(message, "job", 0),
-                getattr(message, "warning_id", 0),
-            )
-        )
+        self.recorded.commands.append(command_record(message))
 
     def _diagnostics(self, time: int, _topic: str, message: Any) -> None:
         for status in message.status:
@@ -364,7 +383,29 @@ class Reader:
         self.recorded.coordinates.append(coordinates(channel, message))
 
 
+def is_kept(attachment: str) -> bool:
+    """Checkpoints are of no use but for a replay (run_inputs.py)."""
+    return not attachment.startswith((CHECKPOINT, CHECKPOINT_TEXT))
+
+
 def coordinates(channel: str, offsets: Any) -> Coordinates:
     """Of ChannelOffsets; those of older recordings have no origin."""
     origin = tuple(getattr(offsets, "origin", ()))
     return Coordinates(offsets.cycle, channel, tuple(offsets.axes), tuple(offsets.systems), origin)
+
+
+def command_record(message: Any) -> CommandRecord:
+    """Of a CommandRecord message; those of older recordings have fewer fields."""
+    return CommandRecord(
+        message.cycle,
+        message.target,
+        message.command,
+        message.arguments_json,
+        message.accepted,
+        message.error_id,
+        message.message,
+        getattr(message, "id", 0),
+        read_values(getattr(message, "values_json", "")),
+        getattr(message, "job", 0),
+        getattr(message, "warning_id", 0),
+    )

@@ -4,25 +4,22 @@ from __future__ import annotations
 
 import math
 import operator
-import platform
 import re
 from collections.abc import Callable, Mapping
 from functools import partial
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from cnc_ptp import KERNEL
 from cnc_ptp.errors import CncError, nearest_name
 from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, CycleTick, SpindleBlock
 from cnc_ptp.recording.blocks import StateBlock, kind_of
-from cnc_ptp.recording.writer import Recording
+from cnc_ptp.recording.origin import RECORD_WHEN, origin
+from cnc_ptp.recording.settings import Settings
+from cnc_ptp.recording.writer import AS_USUAL, NO_NOTES, Recording
 from cnc_ptp.wire.block_codec import codec_of, head_of
 from cnc_ptp.wire.layout import Layout
 
 BAD_CONDITION = 26012
-RECORD_WHEN = "record_when"
-"""Key of the metadata: the condition of a recording that does not begin with the run."""
 EXAMPLE = "x.set_velocity != 0"
 OPERATORS: Mapping[str, Callable[[float, float], bool]] = {
     "==": operator.eq,
@@ -79,9 +76,18 @@ class TriggeredRecording(Recording):
     order: each waits until that of the condition's unit has decided about its cycles.
     """
 
-    def __init__(self, path: str | Path, machine_yaml: str, *times: int, condition: Condition) -> None:
+    def __init__(
+        self,
+        path: str | Path,
+        machine_yaml: str,
+        *times: int,
+        condition: Condition,
+        notes: Mapping[str, str] = NO_NOTES,
+        settings: Settings = AS_USUAL,
+    ) -> None:
         """`times`: start and cycle time in ns."""
-        super().__init__(path, machine_yaml, *times, notes={RECORD_WHEN: condition.text, **origin()})
+        notes = {RECORD_WHEN: condition.text, **notes}
+        super().__init__(path, machine_yaml, *times, notes=notes, settings=settings)
         self._condition = condition
         self.begin: int | None = None
         """The first cycle that is recorded."""
@@ -116,20 +122,19 @@ class TriggeredRecording(Recording):
 
 
 def make_recording(
-    path: str | Path, machine_yaml: str, start_ns: int, cycle_time_ns: int, condition: Condition | None
+    path: str | Path,
+    machine_yaml: str,
+    start_ns: int,
+    cycle_time_ns: int,
+    condition: Condition | None,
+    settings: Settings = AS_USUAL,
+    *,
+    notes: Mapping[str, str] = NO_NOTES,
 ) -> Recording:
-    """A recording of the whole run, or one that begins with a condition."""
+    """A recording of the whole run, or one that begins with a condition; `notes` for its metadata."""
+    notes = {**origin(), **notes}
     if condition is None:
-        return Recording(path, machine_yaml, start_ns, cycle_time_ns, notes=origin())
-    return TriggeredRecording(path, machine_yaml, start_ns, cycle_time_ns, condition=condition)
-
-
-def origin() -> dict[str, str]:
-    """What a run was computed by, for the metadata: version and kind of the kernel, Python, computer."""
-    return {
-        "version": version("cnc_ptp"),
-        "kernel": KERNEL.kind,
-        "python": platform.python_version(),
-        "host": platform.node(),
-        "system": platform.platform(),
-    }
+        return Recording(path, machine_yaml, start_ns, cycle_time_ns, notes=notes, settings=settings)
+    return TriggeredRecording(
+        path, machine_yaml, start_ns, cycle_time_ns, condition=condition, notes=notes, settings=settings
+    )

@@ -17,8 +17,8 @@ import numpy.typing as npt
 from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import ChannelBlock, CycleBlock, PlcBlock
 from cnc_ptp.recording.blocks import Cycles, StateBlock, StateKind, block_rows, fill_states, kind_of, thread_kind
+from cnc_ptp.recording.origin import RECORD_WHEN, require_computable
 from cnc_ptp.recording.reader import Recorded
-from cnc_ptp.recording.trigger import RECORD_WHEN
 from cnc_ptp.recording.writer import topic_of
 from cnc_ptp.wire.block_codec import codec_of
 from cnc_ptp.wire.layout import Layout, Records
@@ -144,6 +144,7 @@ def verify(recorded: Recorded, replay: Replay) -> VerifyResult:
             f"recording {recorded.path}: holds no attachment machine.yaml",
             "it cannot be verified, record it with cnc_ptp",
         )
+    require_computable(recorded.path, recorded.metadata)
     checks = {topic: _Check(topic, rows, recorded) for topic, rows in recorded.states.items()}
     threads = {topic_of(name, "thread"): rows for name, rows in recorded.threads.items()}
     checks |= {topic: _Check(topic, rows, recorded) for topic, rows in threads.items()}

@@ -20,7 +20,10 @@ from cnc_ptp.protocol.blocks import ChannelBlock, CommandRecord, CycleBlock, Cyc
 from cnc_ptp.recording.bag import QOS, TYPE_HASH
 from cnc_ptp.recording.blocks import StateKind, block_rows, fill_states, kind_of, kinds_in
 from cnc_ptp.recording.mcap_file import HEAD_SIZE, METADATA, McapFile
+from cnc_ptp.recording.origin import FORMAT, FORMAT_VERSION
+from cnc_ptp.recording.parts import PartsFolder
 from cnc_ptp.recording.qos import offered, profiles_text
+from cnc_ptp.recording.settings import Settings, Split
 from cnc_ptp.wire.block_codec import codec_of, head_of, with_plain_header
 from cnc_ptp.wire.layout import Bytes, Layout, encode, repeat
 from cnc_ptp.wire.schemas import full_name, load_schema, type_hash
@@ -31,6 +34,13 @@ TWO_TYPES = 26008
 CLOSED = 26009
 ROOM = bytes(HEAD_SIZE)  # for the record head in front of each message
 MACHINE_FILE = "machine.yaml"
+PLC_FILE = "plc/"
+"""Attachment with the PLC in a file that served the run; its name ends with that of the file."""
+CHECKPOINT = "checkpoint/"
+"""Attachments with states of the units: their names end with the first cycle behind it."""
+CHECKPOINT_TEXT = "checkpoint_text/"
+"""Attachments with long texts of the states: their names end with the digest."""
+AS_USUAL = Settings()
 NO_NOTES: Mapping[str, str] = {}
 BEFORE_ALL = -1  # end of the chunk before the first block
 
@@ -135,6 +145,8 @@ class MessageFile(Protocol):
 
     @property
     def chunks_ready(self) -> bool: ...
+    @property
+    def size(self) -> int: ...
     def attachment(self, name: str, media_type: str, data: bytes, log_time: int) -> None: ...
     def metadata(self, name: str, values: dict[str, str]) -> None: ...
     def channel(self, topic: str, type_name: str, schema_text: str, metadata: dict[str, str]) -> int: ...
@@ -168,9 +180,13 @@ class Recording:
         flush_seconds: float = 0.5,
         level: int = 1,
         notes: Mapping[str, str] = NO_NOTES,
+        settings: Settings = AS_USUAL,
         file: MessageFile | None = None,
     ) -> None:
-        """`notes` for its metadata; `file`: what takes the messages instead of an MCAP file."""
+        """`notes` for its metadata. With a split in its `settings`, `path` is a folder of parts (PartsFolder).
+
+        `file`: what takes the messages instead of an MCAP file.
+        """
         self.path = Path(path)
         self.stamps = Stamps(start_ns, cycle_time_ns)
         self._chunk_cycles = max(1, round(chunk_seconds * 1e9 / cycle_time_ns))
@@ -180,10 +196,30 @@ class Recording:
         self._topics: dict[str, _Topic] = {}
         self._units: dict[tuple[str, type], _Unit] = {}
         self._closed = False
-        self._file = McapFile(self.path, level) if file is None else file
-        self.attachment(MACHINE_FILE, "application/yaml", machine_yaml)
+        self._level, self._settings = level, settings
+        self._split = settings.split
+        self._part_begin = BEFORE_ALL
+        """First cycle of the part that is being written."""
+        self._folder = PartsFolder(self.path) if settings.split else None
+        self._files = {MACHINE_FILE: machine_yaml, **settings.files}
         times = {"start_ns": str(start_ns), "cycle_time_ns": str(cycle_time_ns)}
-        self._file.metadata(METADATA, {**times, **notes})
+        self._notes = {FORMAT: str(FORMAT_VERSION), **times, **notes}
+        self._file = self._new_file() if file is None else file
+        self._describe()
+
+    def _new_file(self) -> MessageFile:
+        """The file, or the next part of several."""
+        compression = self._settings.compression
+        if self._folder is None:
+            return McapFile(self.path, self._level, compression=compression)
+        part = self._folder.next_part()
+        return McapFile(part, self._level, compression=compression, describe=self._folder.add)
+
+    def _describe(self) -> None:
+        """Tells the file what a reader must know of the run."""
+        for name, text in self._files.items():
+            self._file.attachment(name, media_type(name), text.encode(), self.stamps.start_ns)
+        self._file.metadata(METADATA, self._notes)
 
     def block(self, name: str, block: CycleBlock, *, handshakes: bool = True) -> None:
         """`/<name>/block` and, per cycle, `/<name>/state`.
@@ -228,6 +264,11 @@ class Recording:
         """A file of the run, e.g. the NC program."""
         self._require_open(name)
         self._file.attachment(name, media_type, text.encode(), self.stamps.start_ns)
+
+    def checkpoint(self, cycle: int, state: bytes) -> None:
+        """The state of the units before `cycle`."""
+        self._require_open("a checkpoint")
+        self._file.attachment(f"{CHECKPOINT}{cycle}", "application/octet-stream", state, self.stamps.at(cycle))
 
     # writing
 
@@ -298,8 +339,7 @@ class Recording:
         known = self._topics.get(topic)
         if known is None:
             self._require_open(topic)
-            schema = load_schema(type_name)
-            known = _Topic(self._file.channel(topic, full_name(type_name), schema.text, offer(type_name)), schema.name)
+            known = _Topic(self._announce(topic, type_name), load_schema(type_name).name)
             self._topics[topic] = known
         elif type_name not in known.type_names:
             raise CncError(
@@ -309,6 +349,9 @@ class Recording:
                 "it was not recorded",
             )
         return known
+
+    def _announce(self, topic: str, type_name: str) -> int:
+        return self._file.channel(topic, full_name(type_name), load_schema(type_name).text, offer(type_name))
 
     def _require_open(self, what: str) -> None:
         if self._closed:
@@ -321,7 +364,25 @@ class Recording:
         self._require_open(f"the block with first cycle {first_cycle}")
         if self._chunk_end != BEFORE_ALL:
             self._close_chunk()
+        if self._split is not None:
+            self._begin_part_if_due(self._split, first_cycle)
         self._chunk_end = first_cycle + self._chunk_cycles
+
+    def _begin_part_if_due(self, split: Split, first_cycle: int) -> None:
+        """The next part when this one is full: each has whole chunks, and its size is known when they are written."""
+        if self._part_begin == BEFORE_ALL:
+            self._part_begin = first_cycle
+        if split.size:
+            self._file.finish_chunks()
+        seconds = (first_cycle - self._part_begin) * self.stamps.cycle_time_ns * 1e-9
+        if not (0 < split.size <= self._file.size or 0 < split.seconds <= seconds):
+            return
+        self._part_begin = first_cycle
+        self._file.close()
+        self._file = self._new_file()
+        self._describe()
+        for name, topic in self._topics.items():
+            topic.channel_id = self._announce(name, topic.type_names[1])
 
     def _close_chunk(self) -> None:
         """A chunk of what the run can be computed from, then one for the states of each unit."""
@@ -343,21 +404,13 @@ class Recording:
                 self._file.messages(topic.channel_id, rows, times)
 
 
-class NoRecording:
-    """Takes what a recording takes, and keeps nothing: after a disk was full the run continues."""
-
-    def __init__(self, stamps: Stamps) -> None:
-        self.stamps = stamps
-
-    def take(self, *_arguments: Any, **_options: Any) -> None:
-        """See Recording."""
-
-    block = encoded_block = tick = event = command = raw = attachment = flush_if_due = flush = close = take
-
-
 def offer(type_name: str) -> dict[str, str]:
     """Metadata of a topic's channel: quality of service, hash of the type."""
     return {QOS: profiles_text(offered(full_name(type_name))), TYPE_HASH: type_hash(type_name)}
+
+
+def media_type(name: str) -> str:
+    return "application/yaml" if name.endswith((".yaml", ".yml")) else "text/plain"
 
 
 def topic_of(name: str, leaf: str) -> str:

@@ -206,7 +206,7 @@ def test_modulo_starts_in_a_row_stay_congruent() -> None:
 def test_an_axis_at_its_modulo_position_does_not_move(position: float) -> None:
     bench = rotary_bench(90.0 + 360.0)
     assert bench.accepted("move_modulo", position=position) == (
-        "P-WARN-23007 axis c: move_modulo over 0 deg is below one encoder increment (0.0 deg); the axis does not move"
+        "P-WARN-23007 axis c: move_modulo over 0 deg: the axis is at its target already; the axis does not move"
     )
     bench.run(100)
     assert set(bench.column("set_position")) == {450.0}
@@ -319,7 +319,9 @@ def test_a_way_below_an_encoder_increment_does_not_start() -> None:
 
 def test_an_ideal_encoder_refuses_only_the_way_0() -> None:
     bench = axis_bench(start_position=0.3)
-    assert "over 0 mm is below one encoder increment (0.0 mm)" in bench.accepted("move_absolute", target=0.3)
+    assert bench.accepted("move_absolute", target=0.3) == (
+        "P-WARN-23007 axis x: move_absolute over 0 mm: the axis is at its target already; the axis does not move"
+    )
     assert bench.accepted("move_absolute", target=0.1 + 0.2) == ""  # 5.6e-17 further
     bench.run(10)
     assert bench.state == S.STANDSTILL and bench.column("set_position")[-1] == 0.1 + 0.2

@@ -327,11 +327,26 @@ def test_a_start_in_the_same_block_counts_in_the_order_of_the_commands() -> None
     records = bench.send_all([couple("y", 1.0), start(), couple("z", 1.0), couple("c", 1.0, "y")])
     assert [record.accepted for record in records] == [True, True, False, False]
     assert records[2].message == (
-        "axis z: couple refused: the master x moves; both axes must be at a standstill; nothing was changed"
+        "axis z: couple refused: move_absolute of x was commanded in the same block, so that the standstill of the "
+        "master x is known in the next one only; nothing was changed"
     )
     assert records[3].message == (
-        "axis c: couple refused: the master y moves; both axes must be at a standstill; nothing was changed"
+        "axis c: couple refused: move_absolute of x was commanded in the same block, so that the standstill of the "
+        "master y is known in the next one only; nothing was changed"
     )
+
+
+def test_a_start_that_is_refused_leaves_the_master_for_the_next_block() -> None:
+    """MC_CamIn beside a refused MC_MoveAbsolute: x stands, which nobody knows before its answer."""
+    bench = SlaveBench()
+    cam = ("y", "couple_cam", {"master": "x", "table": [[0.0, 0.0], [50.0, 30.0], [100.0, 0.0]]})
+    beyond, denied = bench.send_all([start(1e6), cam])
+    assert beyond.error_id == 120002 and denied.error_id == 23045
+    assert denied.message == (
+        "axis y: couple_cam refused: move_absolute of x was commanded in the same block, so that the standstill of the "
+        "master x is known in the next one only; nothing was changed"
+    )
+    assert bench.send_all([cam])[0].accepted
 
 
 def test_circles_are_refused_in_one_block_and_later() -> None:

@@ -174,6 +174,15 @@ def test_halt_superimposed_without_any_is_done_immediately() -> None:
     assert told(bench) == [(1, ACTIVE), (1, DONE)]
 
 
+def test_a_distance_of_0_is_done_immediately() -> None:
+    bench = axis_bench(encoder_increment=0.01)
+    assert bench.accepted("move_superimposed", distance=0.0) == (
+        "P-WARN-23007 axis x: move_superimposed over 0 mm: there is no distance to add; nothing is added"
+    )
+    bench.run(10)
+    assert told(bench) == [(1, ACTIVE), (1, DONE)] and bench.state == S.STANDSTILL
+
+
 def test_a_distance_below_an_increment_is_done_immediately() -> None:
     bench = axis_bench(encoder_increment=0.01)
     message = bench.accepted("move_superimposed", distance=0.005)

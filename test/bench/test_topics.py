@@ -14,10 +14,12 @@ from bench import (
     lookahead,
     motion,
     offline,
+    plc,
     recording,
     smoothing,
     spindles,
     streaming,
+    sweep,
 )
 from bench.figures import Effort
 from bench.graph_run import SUPERVISOR, GraphRun, Watch, node_name, run_graph
@@ -31,7 +33,7 @@ SMALLEST = Effort(runs=1, size=0.002, graph_seconds=1.0)
 
 
 @pytest.mark.parametrize(
-    "topic", [interpreter, motion, control, smoothing, lookahead, streaming, recording, offline, spindles, lists]
+    "topic", [interpreter, motion, control, smoothing, lookahead, streaming, recording, offline, spindles, lists, sweep]
 )
 def test_topic_yields_figures(topic) -> None:
     said: list[str] = []
@@ -62,6 +64,16 @@ def test_graph_composed_in_one_process(tmp_path: Path) -> None:
     assert run.failures == []
     assert run.startup > 0.0
     assert graph.missing_samples(record) == 0
+
+
+def test_a_plc_beside_the_graph(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Four topics at once; how fast, is not judged."""
+    monkeypatch.setenv("ROS_DOMAIN_ID", "0")  # it takes a domain of its own, which ends with the test
+    figures = {figure.name: figure for figure in plc.figures(SMALLEST, print)}
+    sent = figures["override messages per second and topic"].value
+    assert figures["seconds of override messages on 4 topics"].value * sent == pytest.approx(1000.0)
+    assert figures["blocks lost"].value == figures["samples missing in the recording"].value == 0.0
+    assert figures["topics whose newest value has won"].value == 4
 
 
 def test_figures_of_a_watched_run() -> None:

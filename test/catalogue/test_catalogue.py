@@ -57,6 +57,10 @@ def test_texts_are_those_of_the_sources() -> None:
     assert (CATALOGUE / "texts.yaml").read_text(encoding="utf-8") == "".join(lines()), f"a text was changed{HOW}"
 
 
+def test_texts_have_one_ellipsis() -> None:
+    assert "…" not in (CATALOGUE / "texts.yaml").read_text(encoding="utf-8"), "texts write ..."
+
+
 def test_page_is_up_to_date() -> None:
     assert (ROOT / "docs" / "errors.md").read_text(encoding="utf-8") == reference_markdown(), HOW
 

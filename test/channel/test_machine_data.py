@@ -100,7 +100,7 @@ SYNTAX = '#MACHINE DATA is written [AX=X P-AXIS-00099.0=5000] or [AX=X AXPARAM="
         ("#MACHINE DATA [AX=X P-AXIS-00020=2]", "23095 21 axis X: P-AXIS-00020 (kenngr.antr_typ) cannot be written at run time, it is taken over at start-up only, as the manual has it"),
         ("#MACHINE DATA [AX=X P-AXIS-00178=5]", "23100 21 axis X: P-AXIS-00178 (kenngr.swe_pos) cannot be written at run time, the channel has it, too"),
         ('#MACHINE DATA [AX=X AXPARAM="frict_comp.max_points 5"]', "110641 30 axis X: P-COMP-00062 (frict_comp.max_points) cannot be written at run time, it is taken over at start-up only, as the manual has it"),
-        ('#MACHINE DATA [AX=X AXPARAM="getriebe[0].kvv 5"]', "23095 30 axis X: axis /x has no parameter 'getriebe.0.kvv'; did you mean getriebe[i].kv (P-AXIS-00099)?"),
+        ('#MACHINE DATA [AX=X AXPARAM="getriebe[0].kvv 5"]', "23095 30 axis X: axis x has no parameter 'getriebe.0.kvv'; did you mean getriebe[i].kv (P-AXIS-00099)?"),
     ],
 )  # fmt: skip
 def test_errors_before_anything_moves(line: str, error: str) -> None:

@@ -19,7 +19,10 @@ def test_random_programs(seed: int) -> None:
     assert RandomProgram(seed).check().texts == []
 
 
-@pytest.mark.parametrize("seed", [37, 49, 108, 118, 127, 167, 190, 205, 277, 317, 375, 421, 512, 513, 520, 2135, 2221])
+FAILED = (37, 49, 108, 118, 127, 167, 190, 205, 277, 317, 375, 421, 512, 513, 520, 2135, 2221, 5638, 5716, 5737, 5773)
+
+
+@pytest.mark.parametrize("seed", FAILED)
 def test_programs_that_have_failed(seed: int) -> None:
     assert RandomProgram(seed).check().texts == []
 

@@ -175,22 +175,25 @@ def test_a_feed_that_the_axes_cannot_hold_is_warned_about():
 @pytest.mark.parametrize(
     ("arguments", "text"),
     [
-        (["--radius", 0, "--feed", 2000], "P-ERR-27020 radius 0 mm is not within 0.001 … 100000; nothing was started"),
+        (
+            ["--radius", 0, "--feed", 2000],
+            "P-ERR-27020 radius 0 mm is not within 0.001 ... 100000; nothing was started",
+        ),
         (
             ["--radius", 1e-9, "--feed", 2000],
-            "P-ERR-27020 radius 1e-09 mm is not within 0.001 … 100000; nothing was started",
+            "P-ERR-27020 radius 1e-09 mm is not within 0.001 ... 100000; nothing was started",
         ),
         (
             ["--radius", "nan", "--feed", 2000],
-            "P-ERR-27020 radius nan mm is not within 0.001 … 100000; nothing was started",
+            "P-ERR-27020 radius nan mm is not within 0.001 ... 100000; nothing was started",
         ),
         (
             ["--radius", 25, "--feed", 2000, "--centre", "nan", 0],
-            "P-ERR-27020 centre nan mm is not within -100000 … 100000; nothing was started",
+            "P-ERR-27020 centre nan mm is not within -100000 ... 100000; nothing was started",
         ),
         (
             ["--radius", 25, "--feed", 2000, "--centre", 0, "-inf"],
-            "P-ERR-27020 centre -inf mm is not within -100000 … 100000; nothing was started",
+            "P-ERR-27020 centre -inf mm is not within -100000 ... 100000; nothing was started",
         ),
         (
             ["--radius", 25, "--feed", 0],

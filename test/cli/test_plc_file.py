@@ -37,6 +37,21 @@ def test_a_plc_alone_is_a_job_and_its_run_is_replayed_without_the_file(tmp_path:
     assert recorded.states["/x/state"]["set_position"].max() == 2000.0
 
 
+def test_what_a_plc_tells_is_printed_in_its_order(tmp_path: Path) -> None:
+    file = tmp_path / "plc.py"
+    file.write_text(
+        "class Plc:\n    def cycle(self, io):\n        io.done(io.cycle > 20)\n"
+        "        if io.cycle <= 20:\n            io.event(f'[block] {io.cycle}')\n"
+    )
+    recording = tmp_path / "run.mcap"
+    result = simulate(PTP, "--plc", file, "--record", recording)
+    assert result.exit_code == 0
+    told = [line for line in result.output.splitlines() if "block" in line]
+    assert told == [f"message: plc plc: [block] {cycle}" for cycle in (0, 10, 20)]
+    events = [(event.cycle, event.error_id, event.text) for event in read_recording(recording).events]
+    assert events == [(cycle, 22054, f"plc plc: [block] {cycle}") for cycle in (0, 10, 20)]
+
+
 def test_a_plc_that_raises_makes_the_status_1(tmp_path: Path) -> None:
     file = tmp_path / "plc.py"
     file.write_text("class Plc:\n    def cycle(self, io):\n        if io.cycle == 50:\n            io.axis('q')\n")

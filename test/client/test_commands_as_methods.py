@@ -14,7 +14,7 @@ from cnc_ptp.protocol.commands import COMMANDS, Argument
 from cnc_ptp.protocol.jobs import JOBS
 
 CLASSES = {"axis": Axis, "spindle": Spindle, "channel": Channel, "plc": Plc}
-GIVEN_BY_OTHERS = {"above", "master_stands", "master_lost", "own", "homes", "owner", "by_path"}
+GIVEN_BY_OTHERS = {"above", "master_stands", "master_start", "master_lost", "own", "homes", "owner", "by_path"}
 """Arguments that only the PLC and channels give."""
 DEFAULTS = {
     ("spindle", "start", "direction"): "cw",

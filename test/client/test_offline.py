@@ -167,6 +167,8 @@ def test_a_refusal_has_number_text_and_values(m: Machine) -> None:
         (lambda m: m.x.move_absolute("far"), "22001 axis x: move_absolute refused: target = 'far' is not a number; nothing was changed"),
         (lambda m: m.x.move_absolute(float("nan")), "22001 axis x: move_absolute refused: target = nan is not finite; nothing was changed"),
         (lambda m: m.x.move_absolute(1, velocity=0), "22001 axis x: move_absolute refused: velocity = 0 must be greater than 0; nothing was sent"),
+        (lambda m: m.plc.acknowledge(-1), "22001 plc plc: acknowledge refused: id = -1 is not within 0 ... 18446744073709551615; nothing was sent"),
+        (lambda m: m.x.set_override_type(258), "22001 axis x: set_override_type refused: type = 258 is not within 0 ... 255; nothing was sent"),
         (lambda m: m.s.start(100, direction="up"), "22001 spindle s: start refused: direction = 'up' is not cw or ccw; nothing was changed"),
         (lambda m: m.y.couple_cam(master="x"), "22001 axis y: couple_cam refused: argument 'table' is missing; nothing was changed"),
         (

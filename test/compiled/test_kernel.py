@@ -26,6 +26,7 @@ from cnc_ptp.control.drives import (
     TelegramDrive,
     VirtualDrive,
 )
+from cnc_ptp.recording.reader import iter_messages
 
 ROOT = Path(__file__).parents[2]
 EDITED = "changed since it was compiled" in KERNEL.interpreted_because
@@ -62,7 +63,7 @@ def test_both_kernels_give_the_same_bits(run: str, tmp_path: Path) -> None:
         assert done.returncode == (1 if run == "gantry" else 0), done.stderr  # the gantry ends in its difference
         kind = "interpreted" if pure else "compiled"
         assert done.stdout.splitlines()[0].endswith(f"times real time, kernel {kind}")
-    assert files[0].read_bytes() == files[1].read_bytes()
+    assert [*iter_messages(files[0])] == [*iter_messages(files[1])]  # but for the metadata and the checkpoints
 
 
 @compiled_only

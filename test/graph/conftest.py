@@ -6,7 +6,13 @@ from itertools import count
 
 import pytest
 
+from cnc_ptp.client import graph_link
+from cnc_ptp.commands.client import jog, status
+from cnc_ptp.nodes.client import machine_client
+
 FROM_OUTSIDE = ("ROS_AUTOMATIC_DISCOVERY_RANGE", "FASTDDS_DEFAULT_PROFILES_FILE", "FASTDDS_BUILTIN_TRANSPORTS")
+PATIENT = 30.0
+"""Seconds for an answer."""
 WISHES = count(os.getpid() * 47)
 
 
@@ -21,6 +27,15 @@ def ros_domain():
     yield number
     os.environ.clear()
     os.environ.update(before)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def patient_clients():
+    """Clients in the process of a test wait longer than users do: what else runs on the machine fails no test."""
+    with pytest.MonkeyPatch.context() as patch:
+        for module in (machine_client, graph_link, jog, status):
+            patch.setattr(module, "PATIENCE", PATIENT)
+        yield
 
 
 def free_domain(wish):

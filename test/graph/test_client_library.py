@@ -312,7 +312,8 @@ def test_a_machine_that_falls_silent_is_gone(ros_domain, folder):
     assert job.status is JobStatus.ABORTED
 
 
-def test_a_unit_that_says_nothing(m):
+def test_a_unit_that_says_nothing(m, monkeypatch):
+    monkeypatch.setattr("cnc_ptp.client.graph_link.PATIENCE", 5.0)
     link = GraphLink(domain=None, namespace="")
     link.observe({"plc": "plc", "ghost": "axis"}, 0.001)
     session = Session(link)

@@ -10,10 +10,11 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.nodes import process
 from cnc_ptp.nodes.clock import ClockNode
 from cnc_ptp.nodes.monitor import RunMonitor
-from cnc_ptp.nodes.recorder import RecorderNode, require_writable
+from cnc_ptp.nodes.recorder import RecorderNode
 from cnc_ptp.nodes.topics import BLOCKS, EVENT, EVENTS, REPORT, TICK, block_topic
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import PlcBlock, Severity
+from cnc_ptp.recording.writing_place import require_writable
 from cnc_ptp.wire.block_codec import encode_block
 from cnc_ptp.wire.stamps import Stamps
 

@@ -3,6 +3,7 @@
 from concurrent.futures import Future
 from contextlib import nullcontext
 
+import numpy as np
 import pytest
 import rclpy
 from graph_support import MILL, run
@@ -15,13 +16,18 @@ from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.nodes import player, process
 from cnc_ptp.nodes.bridge.coupling_services import PATIENCE as COUPLING_PATIENCE
 from cnc_ptp.nodes.client.latest_blocks import LatestBlocks
-from cnc_ptp.nodes.client.machine_client import PATIENCE, MachineClient
-from cnc_ptp.nodes.client.requests import integer_range
+from cnc_ptp.nodes.client.machine_client import PATIENCE, MachineClient, services_of
 from cnc_ptp.nodes.topics import REMEMBERED_BLOCKS
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import CycleTick
+from cnc_ptp.protocol.commands import COMMANDS, INTEGER_RANGES
 from cnc_ptp.wire.block_codec import encode_block
 from cnc_ptp.wire.stamps import Stamps
+
+
+@pytest.fixture(scope="module")
+def patient_clients():
+    """Here they are as impatient as those of users."""
 
 
 @pytest.fixture
@@ -73,16 +79,20 @@ def test_an_answer_that_was_given_up_by_a_client_that_has_ended():
 def test_an_integer_that_its_field_does_not_hold_is_not_sent(client, value):
     """ROS would wrap it round: 258 is type 2."""
     done = call("do", "x", "set_override_type", f"type={value}")
-    text = f"axis x: set_override_type refused: type = {value} is not within 0 … 255; nothing was sent"
+    text = f"axis x: set_override_type refused: type = {value} is not within 0 ... 255; nothing was sent"
     assert (done.exit_code, done.stdout, done.stderr) == (2, "", f"P-ERR-22001 {text}\n")
 
 
-@pytest.mark.parametrize(
-    ("unsigned", "bits", "limits"),
-    [(True, 8, (0, 255)), (False, 8, (-128, 127)), (True, 64, (0, 18446744073709551615))],
-)
-def test_ranges_of_integers(unsigned, bits, limits):
-    assert integer_range(unsigned, bits) == limits
+@pytest.mark.parametrize("kind", COMMANDS)
+def test_integers_have_the_range_of_their_field(kind):
+    """Where nothing is sent, a client refuses the same numbers."""
+    for command, service in services_of(kind).items():
+        fields = service.Request.get_fields_and_field_types()
+        for name, argument in COMMANDS[kind][command].items():
+            if argument.kind == "integer" and name in fields:
+                limits = np.iinfo(fields[name])
+                assert argument.field == fields[name], (command, name)
+                assert INTEGER_RANGES[argument.field] == (limits.min, limits.max)
 
 
 def test_a_unit_without_blocks_has_no_data(client):

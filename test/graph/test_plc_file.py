@@ -45,10 +45,12 @@ class Plc:
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
+    """Recordings of the jobs offline, and what `simulate` has printed."""
     folder = tmp_path_factory.mktemp("plc")
     (folder / "moves.py").write_text(MOVES)
     for name, job in {**JOBS, "moves": (PTP, "--plc", folder / "moves.py")}.items():
-        run("simulate", *job, "--record", folder / f"{name}.mcap")
+        told = run("simulate", *job, "--record", folder / f"{name}.mcap").stdout
+        (folder / f"{name}.txt").write_text(told)
     return folder
 
 
@@ -66,17 +68,33 @@ def test_a_plc_in_the_graph_equals_the_offline_run(folder, name, options):
         for path in (folder / f"{name}.mcap", recording)
     ]
     assert events[0] == events[1]
+    messages = messages_in(output)
+    assert messages == messages_in((folder / f"{name}.txt").read_text())
+    assert ("message: plc plc: the door is open" in messages) == (name == "tool changer")
+
+
+def messages_in(output):
+    return [line for line in output.splitlines() if line.startswith("message: ")]
+
+
+TRIGGERS = {
+    "plc_setpoint_generator.py": ("x.set_position > 100", lambda x: x["set_position"][:10].max() > 100.0, 200),
+    "plc_move_axis.py": ("x.set_velocity != 0", lambda x: x["set_velocity"][:10].any(), 0),
+}
+"""PLC file -> condition, whether it holds in the first block, cycle before which it cannot (TX1250 4.3: the start)."""
 
 
 @pytest.mark.parametrize("options", [[], ["--composed"]], ids=str)
-def test_a_recording_with_a_trigger_begins_with_the_same_block(folder, options):
-    job = (PTP, "--plc", EXAMPLES / "plc_setpoint_generator.py", "--record-when", "x.set_position > 100")
+@pytest.mark.parametrize("name", TRIGGERS)
+def test_a_recording_with_a_trigger_begins_with_the_same_block(folder, name, options):
+    condition, holds, before = TRIGGERS[name]
+    job = (PTP, "--plc", EXAMPLES / name, "--record-when", condition)
     run("simulate", *job, "--record", folder / "a.mcap")
     run("run", *job, "--free-run", *options, "--record", folder / "b.mcap")
     assert states_equal(folder / "a.mcap", folder / "b.mcap") == []
     states = verified(folder / "b.mcap").states
     assert {int(rows["cycle"][0]) for rows in states.values()} == {int(states["/x/state"]["cycle"][0])}
-    assert states["/x/state"]["set_position"][:10].max() > 100.0 and states["/x/state"]["cycle"][0] > 200
+    assert holds(states["/x/state"]) and states["/x/state"]["cycle"][0] > before
 
 
 FAULT = """

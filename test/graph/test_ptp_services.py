@@ -28,7 +28,7 @@ def test_fields_of_services_are_the_arguments_of_commands(kind):
 
 
 def test_fields_of_coupling_services():
-    filled_in = {"above", "master_stands", "master_lost", "table"}
+    filled_in = {"above", "master_stands", "master_start", "master_lost", "table"}
     for command, service in COUPLING_SERVICES.items():
         fields = service.Request.get_fields_and_field_types()
         points = {"master_points", "slave_points"} if "table" in COMMANDS["axis"][command] else set()

@@ -43,6 +43,7 @@ COMMANDS = {
     "circle",
     "curve",
     "lists",
+    "sweep",
 }
 NODES = {"nc_channel", "axis", "spindle", "plc_bridge", "clock", "recorder", "player"}
 EXECUTABLES = {"cnc_ptp", *COMMANDS, *NODES}

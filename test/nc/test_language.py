@@ -1,5 +1,7 @@
 """The language rule by rule: spelling of words, modal state, functions and their order, structure, skip, MDI, veto."""
 
+import re
+
 import pytest
 from nc_support import lines, run
 
@@ -13,10 +15,24 @@ from cnc_ptp.nc.modal_state import ModalState
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.plain_channel import plain_channel
 from cnc_ptp.nc.program import Limits
+from cnc_ptp.nc.transitions import CONTOUR
 from cnc_ptp.nc.vocabulary import TWINCAT
 
 AXES = ("X", "Y", "Z")
 CHANNEL = plain_channel(AXES)
+
+
+def test_the_syntax_of_contour_mode_is_what_it_takes():
+    """Each word of each bracket that the texts show, and no other one, is permitted there."""
+    shown = {mode: words.split() for mode, words in re.findall(r"\[(\w+) ?(.*?)\]", CONTOUR)}
+    assert list(shown) == ["DEV", "DIST", "POS", "OFF"]
+    known = {word for words in shown.values() for word in words}
+    for mode, words in shown.items():
+        assert lines(f"#CONTOUR MODE [{' '.join([mode, *words])}]\nG01 X1 F600")
+        point = ["X10"] if mode == "POS" else []
+        for word in known - set(point):
+            text = f"#CONTOUR MODE [{' '.join([mode, *point, word])}]"
+            assert (check(f"{text}\nM30", "t.nc", CHANNEL) == []) == (word in words), text
 
 
 @pytest.mark.parametrize(

@@ -110,7 +110,7 @@ def test_a_value_in_two_lists_of_an_axis() -> None:
 
 def test_a_long_line_is_cut() -> None:
     said = axis_refusal("getriebe[0].kv " + "9" * 5000)
-    assert said.endswith(f", in 'getriebe[0].kv {'9' * 84}…'{END}")
+    assert said.endswith(f", in 'getriebe[0].kv {'9' * 82}...'{END}")
 
 
 def test_sections_that_are_not_ended_as_they_begin() -> None:

@@ -173,7 +173,7 @@ REFUSALS = {
     ),
     "T1000 without D": (
         "1000: {length: 1}",
-        "25008 t:1:1: tool T1000 needs D numbers of its own (d: …), its number is above 999",
+        "25008 t:1:1: tool T1000 needs D numbers of its own (d: ...), its number is above 999",
     ),
     "a tool that is a number": ("5: 3", "25001 t:1:4: tool T5 must be a mapping"),
     "sets that are a number": ("5: {d: 3}", "25001 t:1:8: tool T5, d must be a mapping"),

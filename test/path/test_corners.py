@@ -217,6 +217,20 @@ def test_different_distances_are_shortened_apart_unless_by_track_dev():
     assert 0.3 <= deviation <= 1.0
 
 
+@pytest.mark.parametrize(("pre", "post"), [(10.0, 0.25), (0.25, 10.0)])
+@pytest.mark.parametrize("radius", [0.05, 0.2, 1.0])
+def test_a_small_arc_does_not_throw_a_curve_of_different_distances_far_out(radius, pre, post):
+    """The curvature of the arc counts on the whole curve, which is as long as both distances."""
+    line = Line((-30.0, 0.0, 0.0), (0.0, 0.0, 0.0), XYZ)
+    arc = Arc((0.0, 0.0, 0.0), (0.0, 2.0 * radius, 0.0), (0.0, radius), (0, 1), radius, 180.0, XYZ)
+    contour = Contour(DIST, pre_dist=pre, post_dist=post, remain_part=0.0)
+    result = corner(whole(line, 0), whole(arc, 1), contour, XYZ)
+    path = np.vstack([positions(whole(element, 0), np.linspace(0.0, element.length, 1000)) for element in (line, arc)])
+    assert (
+        1e-6 < distance_to_polyline(sampled(result)[1], path).max() <= 0.5 * max(pre, min(post, math.pi / 2 * radius))
+    )
+
+
 def test_both_corners_of_a_short_block_meet_in_its_middle():
     lines = [
         whole(Line(begin, end, XYZ), n)

@@ -703,7 +703,7 @@ def test_parameters_of_the_file_and_unknown_ones() -> None:
         and seen[5][2:]
         == (
             22169,
-            "axis /x has no parameter 'getriebe.0.kvv'; did you mean getriebe[i].kv (P-AXIS-00099)?; nothing was read",
+            "axis x has no parameter 'getriebe.0.kvv'; did you mean getriebe[i].kv (P-AXIS-00099)?; nothing was read",
         )
     )
     assert seen[6][2:] == (0, "")

@@ -373,7 +373,7 @@ def test_write_parameter_of_an_axis() -> None:
         "it is taken over at start-up only; nothing was changed"
     )
     assert bench.refused("x", "write_parameter", parameter="kvv", value=1) == (
-        "P-ERR-23095 axis x: write_parameter refused: axis /x has no parameter 'kvv'; nothing was changed"
+        "P-ERR-23095 axis x: write_parameter refused: axis x has no parameter 'kvv'; nothing was changed"
     )
     assert bench.refused("x", "write_parameter", parameter="P-MACH-00014", value=-1) == (
         "P-ERR-23096 axis x: write_parameter refused: P-MACH-00014 ptp.target_time_ms: value -1 is below the minimum "

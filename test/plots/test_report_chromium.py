@@ -3,18 +3,16 @@
 import json
 import math
 import re
-import shutil
-import subprocess
 from urllib.parse import unquote
 
 import pytest
+from browser_support import BROWSER, failures, open_page
 from recording_support import smooth_run
 
 from cnc_ptp.plots.report import plots_page, report_page
 from cnc_ptp.recording.reader import read_recording
 from cnc_ptp.recording.rows import time_rows
 
-BROWSER = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 EVIL = "</script><script>document.title='taken over'</script><img src=x onerror=\"document.title='taken over'\">"
 pytestmark = pytest.mark.skipif(BROWSER is None, reason="no Chromium in PATH (apt-get install chromium)")
 
@@ -109,27 +107,6 @@ PROBE = """
 """
 
 
-def open_page(page, width=1400):
-    """The document after its scripts have run, and what the browser said on its console."""
-    command = [
-        BROWSER,
-        "--headless",
-        "--no-sandbox",
-        "--disable-gpu",
-        "--disable-background-networking",
-        "--enable-unsafe-swiftshader",
-        "--host-resolver-rules=MAP * ~NOTFOUND",
-        f"--user-data-dir={page.parent / 'profile'}",
-        "--enable-logging=stderr",
-        "--virtual-time-budget=40000",
-        f"--window-size={width},1000",
-        "--dump-dom",
-        page.as_uri(),
-    ]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=240, check=True)
-    return done.stdout, [line for line in done.stderr.splitlines() if ":CONSOLE" in line]
-
-
 @pytest.fixture(scope="module")
 def opened(tmp_path_factory):
     folder = tmp_path_factory.mktemp("browser")
@@ -141,7 +118,7 @@ def opened(tmp_path_factory):
 
 def test_no_script_fails(opened):
     _, console = opened
-    assert [line for line in console if re.search(r"Uncaught|Error|Refused|violates", line)] == []
+    assert failures(console) == []
 
 
 def test_all_plots_are_drawn(opened):

@@ -98,6 +98,7 @@ def story(m: Machine, folder: Path) -> list[object]:
     seen.append(refusal(lambda: m.y.couple("x", 0.0)))
     seen.append(refusal(lambda: m.channel.load(str(folder / "none.nc")))[0])
     seen.append(refusal(lambda: m.s.set_limits()))
+    seen.append(refusal(lambda: m.plc.acknowledge(-1)))
     return seen
 
 
@@ -116,6 +117,7 @@ EXPECTED = [
     (23043, "axis y: couple refused: factor = 0 must be different from 0; nothing was changed", {"argument": "factor", "value": 0.0}),
     26110,
     (22001, "spindle s: set_limits refused: nothing is given; reset_limits takes the limits away; nothing was changed", {}),
+    (22001, "plc plc: acknowledge refused: id = -1 is not within 0 ... 18446744073709551615; nothing was sent", {}),
 ]  # fmt: skip
 
 
@@ -194,7 +196,7 @@ BLOCKS_EXPECTED = [
     (True, 22001, "axis x: move_absolute refused: target = nan is not finite; nothing was changed"),
     (True, 22001, "axis x: move_absolute refused: buffer_mode = 'later' is not aborting, buffered, blending_low, blending_previous, blending_next or blending_high; nothing was changed"),
     "command_aborted", "done", 1,
-    500, 0, (22169, "axis /x has no parameter 'P-AXIS-99999'; nothing was read"),
+    500, 0, (22169, "axis x has no parameter 'P-AXIS-99999'; nothing was read"),
 ]  # fmt: skip
 COMPARED = {
     "x": ("set_position", "set_velocity", "set_acceleration", "set_jerk"),

@@ -177,19 +177,19 @@ class PathChecker:
             growing = a * v > 0.0
             found.above(f"{name} a", np.where(growing, np.abs(a), 0.0), axis.acceleration)
             found.above(f"{name} a-", np.where(growing, 0.0, np.abs(a)), strongest if self.steps else axis.deceleration)
-            found.above(f"{name} Δ²p/T²", np.abs(np.diff(p, 2)) / CYCLE**2, strongest, 1e-6)
+            found.above(f"{name} Δ²p/T²", np.abs(np.diff(p, 2)) / CYCLE**2, strongest, 1e-6 + self._unsure(n, 2))
             if not self.steps:
                 found.above(f"{name} j", np.abs(j), axis.jerk)
-                found.above(f"{name} Δ³p/T³", np.abs(np.diff(p, 3)) / CYCLE**3, axis.jerk, 1e-3 + self._unsure(n))
+                found.above(f"{name} Δ³p/T³", np.abs(np.diff(p, 3)) / CYCLE**3, axis.jerk, 1e-3 + self._unsure(n, 3))
                 mean = 0.5 * CYCLE * (v[1:] + v[:-1]) - CYCLE**2 * (a[1:] - a[:-1]) / 12.0
                 kink = 0.5 * axis.jerk * CYCLE**3
                 found.above(f"{name} states and positions", np.abs(np.diff(p) - mean), kink, 1e-9)
 
-    def _unsure(self, axis: int) -> float:
-        """Of a third difference, by the resolution of the path length on the segment where the axis is fastest."""
+    def _unsure(self, axis: int, order: int) -> float:
+        """Of a difference, by the resolution of the path length on the segment where the axis is fastest."""
         ways = [(abs(s.end[axis] - s.start[axis]), np.linalg.norm((s.end - s.start)[self.path])) for s in self.segments]
         steepest = max((way / length for way, length in ways if length > EXACT), default=0.0)
-        return float(8.0 * RESOLUTION * steepest / CYCLE**3)
+        return float(2.0**order * RESOLUTION * steepest / CYCLE**order)
 
     # path
 

@@ -29,6 +29,9 @@ APART = {
     26119: "graph/test_spindles.py",
     26142: "graph/test_gap.py",
     26143: "graph/test_coupling_answers.py",
+    26194: "recording/test_on_demand.py",
+    26195: "recording/test_on_demand.py",
+    26196: "graph/test_recording_on_demand.py",
 }
 """Tests that hold the number and its text apart from each other."""
 

@@ -11,7 +11,15 @@ import yaml
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.plc.scenario import SWITCH_WORDS, read_value
-from cnc_ptp.protocol.commands import BAD_ARGUMENT, Argument, Arguments, check_arguments, check_sendable, current_names
+from cnc_ptp.protocol.commands import (
+    BAD_ARGUMENT,
+    COMMANDS,
+    Argument,
+    Arguments,
+    check_arguments,
+    check_sendable,
+    current_names,
+)
 
 SWITCHES = SWITCH_WORDS | {"true": True, "false": False}
 PATHS = ("file", "program")
@@ -23,14 +31,14 @@ def read_arguments(kind: str, unit: str, command: str, words: Sequence[str], kno
 
     A word without a name goes to the one argument that the command must have.
     """
-    where = f"{kind} {unit}: {command} refused"
+    where = f"{kind} {unit}".rstrip() + f": {command} refused"
     texts: dict[str, str] = {}
     for word in words:
         name, text = _split(where, word, known)
         if name in texts:
             raise CncError(BAD_ARGUMENT, f"argument '{name}' is given twice", "nothing was sent", where=where)
         texts[name] = text
-    texts = current_names(kind, command, texts)
+    texts = current_names(kind, command, texts) if kind in COMMANDS else texts
     arguments = {name: _value(name, text, known[name]) if name in known else text for name, text in texts.items()}
     check_arguments(where, known, arguments)
     check_sendable(where, known, arguments)

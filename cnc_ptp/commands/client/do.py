@@ -14,6 +14,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import EndRequest
 from cnc_ptp.nodes.client.latest_blocks import GONE_TEXT
 from cnc_ptp.nodes.client.machine_client import NO_ANSWER, MachineClient, arguments_of, connected
+from cnc_ptp.nodes.topics import RECORDER
 from cnc_ptp.protocol.commands import READING
 
 BEGINNINGS = (
@@ -32,6 +33,8 @@ BEGINNINGS = (
 def do(unit: str, command: str, words: Sequence[str], wait: bool) -> int:
     """Gives the command and prints the answer. Status 1 when it is refused, or fails while it is waited for."""
     with connected() as client:
+        if unit == RECORDER:
+            return tell_recorder(client, command, words)
         kind = client.require_unit(unit)
         arguments = read_arguments(kind, unit, command, words, arguments_of(kind, unit, command))
         waiting = Waiting(client, unit, whole=command in BEGINNINGS) if wait and kind != "plc" else None
@@ -52,6 +55,25 @@ def do(unit: str, command: str, words: Sequence[str], wait: bool) -> int:
         elif answer.message:
             console.print(f"warning: {answer.message}", style="yellow", markup=False)
         return 0 if waiting is None else waiting.until_settled(answer.cycle)
+
+
+def tell_recorder(client: MachineClient, command: str, words: Sequence[str]) -> int:
+    """It is no unit: what it does has no effect on the machine. Status 1 when it refuses."""
+    arguments = read_arguments(RECORDER, "", command, words, arguments_of(RECORDER, "", command))
+    try:
+        answer = client.ask_recorder(command, arguments)
+    except CncError as error:
+        print_error(error)
+        return RUN_FAILED
+    if not answer.accepted:
+        print_error(CncError(answer.error_id, answer.message))
+        return RUN_FAILED
+    console = Console(highlight=False, soft_wrap=True)
+    text = "ends before cycle" if command == "stop" else "begins with cycle"
+    console.print(f"recorder: {command}: {arguments.get('file', 'the recording')} {text} {answer.cycle}", markup=False)
+    if answer.message:
+        console.print(f"warning: {answer.message}", style="yellow", markup=False)
+    return 0
 
 
 class Waiting:

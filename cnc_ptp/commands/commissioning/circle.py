@@ -134,7 +134,7 @@ def check_numbers(
         above = least == 0.0
         if not least <= value <= LARGEST or (above and value == 0.0):
             shown = f"{value:g} {unit}".rstrip()
-            permitted = f"above 0 and up to {LARGEST:g}" if above else f"within {least:g} … {LARGEST:g}"
+            permitted = f"above 0 and up to {LARGEST:g}" if above else f"within {least:g} ... {LARGEST:g}"
             raise CncError(BAD_CIRCLE, f"{name} {shown} is not {permitted}", "nothing was started")
 
 

@@ -12,6 +12,7 @@ from cnc_ptp.plots.comparison import comparison_page
 from cnc_ptp.plots.report import report_page
 from cnc_ptp.recording.difference import PROGRAM
 from cnc_ptp.recording.long_recording import read_for_report
+from cnc_ptp.recording.origin import require_own
 from cnc_ptp.recording.reader import Recorded
 from cnc_ptp.recording.selection import selected
 
@@ -27,13 +28,13 @@ def report(
 ) -> int:
     """Writes the page, of a part if asked for, alone or against another recording; warns of one that was cut off."""
     check_page(output, recording=recording, other_recording=compare)
-    whole = read_for_report(recording, begin, end)
+    whole = read_own(recording, begin, end)
     recorded = selected(whole, begin=begin, end=end, units=axes)
     made = datetime.now(tz=UTC).strftime("%Y-%m-%d %H:%M UTC")
     if compare is None:
         page = report_page(recorded, program=program_of(whole), date=made)
     else:
-        other = selected(read_for_report(compare, begin, end), begin=begin, end=end, units=axes)
+        other = selected(read_own(compare, begin, end), begin=begin, end=end, units=axes)
         page = comparison_page(recorded, other, align=align, date=made)
     write_output(output, page, remains="the recording is unchanged")
     size = Path(output).stat().st_size / 1e6
@@ -42,6 +43,13 @@ def report(
     if not recorded.complete:
         print(f"note: {recorded.missing}")
     return 0
+
+
+def read_own(recording: str, begin: float | None, end: float | None) -> Recorded:
+    """Raises CncError of read_for_report, and 26017 for a recording of another program."""
+    recorded = read_for_report(recording, begin, end)
+    require_own(recorded.path, recorded.metadata, recorded.states)
+    return recorded
 
 
 def program_of(recorded: Recorded) -> str:

@@ -9,12 +9,12 @@ from collections.abc import Iterator
 from cnc_ptp.commands.console import RUN_FAILED
 from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.wiring import build_units
-from cnc_ptp.parameters import MachineParameters, load_machine
-from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock
-from cnc_ptp.protocol.commands import COUPLINGS
+from cnc_ptp.parameters import load_machine
+from cnc_ptp.protocol.blocks import Command, CycleBlock
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.recording.reader import Recorded, read_recording
 from cnc_ptp.recording.verify import verify as verify_recording
+from cnc_ptp.recording.what_if import is_refused_coupling
 
 
 def replay(recording: str, verify: bool, publish: bool, rate: float, inputs: bool = False) -> int:
@@ -45,11 +45,6 @@ def replay_blocks(recorded: Recorded) -> Iterator[tuple[str, CycleBlock]]:
     for first_cycle in range(0, end_of(recorded), machine.block_cycles):
         outputs = offline.replay_tick(commands.get(first_cycle, {}))
         yield from ((name, output.block) for name, output in outputs.items())
-
-
-def is_refused_coupling(record: CommandRecord, machine: MachineParameters) -> bool:
-    """It changed nothing, and the PLC's reason is not recorded: fed in again, it might be carried out."""
-    return not record.accepted and record.command in COUPLINGS and record.target in machine.axes
 
 
 def end_of(recorded: Recorded) -> int:

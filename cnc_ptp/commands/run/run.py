@@ -19,7 +19,7 @@ from cnc_ptp.nodes.supervisor import RunOptions, Supervisor
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.recording.node_figures import BLOCKS, CAME_TWICE, LOST_BLOCKS, following_error
 from cnc_ptp.recording.overwriting import check_recording
-from cnc_ptp.recording.trigger import Condition
+from cnc_ptp.recording.recorder_options import RecorderOptions
 
 
 def run(
@@ -36,11 +36,12 @@ def run(
     dialect: str | None = None,
     begin: StartPoint | None = None,
     plc: str | None = None,
-    record_when: str | None = None,
+    recorder: RecorderOptions | None = None,
     foxglove: int | None = None,
 ) -> int:
     """Runs the graph; prints a summary. Status 1 when a unit ended in error, a node died or the disk was full.
 
+    `recorder`: None = without one.
     `stay`: until Ctrl-C, which is no error when everything is at a standstill. `strict`: status 1 also when a
     command was refused.
     """
@@ -49,8 +50,8 @@ def run(
     print_missing_folders(parameters)
     read_entries(parameters, program=program, scenario=scenario, dialect=dialect, begin=begin)
     check_plc(parameters, plc)
-    if record_when is not None:
-        Condition(record_when, unit_kinds(parameters))
+    if recorder is not None:
+        recorder.check(unit_kinds(parameters))
     options = RunOptions(
         machine=machine,
         program=program,
@@ -63,7 +64,7 @@ def run(
         dialect=dialect,
         begin=begin,
         plc=plc,
-        record_when=record_when,
+        recorder=recorder,
         foxglove=foxglove,
     )
     with RunProgress() as progress:

@@ -33,8 +33,10 @@ from cnc_ptp.plc.program.plc_program import PlcFile
 from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, PlcBlock, Severity
 from cnc_ptp.protocol.notes import Note, Notes, error_text
 from cnc_ptp.protocol.unit import PLC
+from cnc_ptp.recording.checkpoints import CHECKPOINT_SECONDS
 from cnc_ptp.recording.offline_run import OfflineRun
 from cnc_ptp.recording.overwriting import check_recording
+from cnc_ptp.recording.recorder_options import FROM_THE_START, RecorderOptions
 from cnc_ptp.recording.trigger import Condition
 
 LONG_CYCLE = 1.0
@@ -82,17 +84,28 @@ def simulate(
     dialect: str | None = None,
     begin: StartPoint | None = None,
     plc: str | None = None,
-    record_when: str | None = None,
+    checkpoints: float = CHECKPOINT_SECONDS,
+    recorder: RecorderOptions = FROM_THE_START,
 ) -> int:
     """Runs offline; prints a summary. Status 1 when a unit ended in error, with `strict` also for a refused command."""
     check_recording(record, machine_file=machine, NC_program=program, scenario=scenario, PLC_file=plc)
     parameters = read_machine(machine)
     print_missing_folders(parameters)
     job = read_entries(parameters, program=program, scenario=scenario, dialect=dialect, begin=begin)
-    condition = None if record_when is None else Condition(record_when, unit_kinds(parameters))
+    condition = None if recorder.when is None else Condition(recorder.when, unit_kinds(parameters))
+    settings = recorder.settings()
     file = None if plc is None else read_plc(plc)
     units = build_units(parameters, scenario=job, end_when_idle=duration is None, plc_file=file)
-    run = OfflineRun(parameters, units, record=record, machine_text=machine_text(machine), condition=condition)
+    text = machine_text(machine)
+    run = OfflineRun(
+        parameters,
+        units,
+        record=record,
+        machine_text=text,
+        condition=condition,
+        settings=settings,
+        checkpoint_seconds=checkpoints,
+    )
     cycles = None if duration is None else round(duration * 1e6 / parameters.cycle_time_us)
     result = Result()
     gc.freeze()  # what was loaded stays to the end: nothing to be searched for garbage
@@ -114,6 +127,7 @@ def simulate(
     print_summary(parameters, result, time.monotonic() - started, duration)
     print_note_of_idle_run(program, scenario, plc, duration)
     print_note_of_trigger(run)
+    print_note_of_checkpoints(run)
     return RUN_FAILED if result.failed or run.failure or result.interrupted or (strict and result.refused) else 0
 
 
@@ -148,6 +162,12 @@ def print_note_of_trigger(run: OfflineRun) -> None:
     if run.waits_for_trigger:
         text = "note: the condition of --record-when was never true; commands and events alone are recorded"
         Console(highlight=False, soft_wrap=True).print(text, style="yellow")
+
+
+def print_note_of_checkpoints(run: OfflineRun) -> None:
+    """Why a replay from the end of the recording computes more than it would have to."""
+    if run.checkpoint_fault:
+        Console(highlight=False, soft_wrap=True).print(f"note: {run.checkpoint_fault}", style="yellow", markup=False)
 
 
 def print_summary(

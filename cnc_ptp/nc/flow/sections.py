@@ -64,6 +64,8 @@ class Program:
         self.kept: list[Line | None] = [None]
         self.library: Mapping[str, Program] = {}
         self.cycles: Mapping[str, str] = {}
+        self.origin: object = None
+        """What a channel has read it from (program_origin.Origin)."""
         self.special: dict[int, Line] = {}
         """Lines that hold more than their text says: declarations, comments of several lines."""
         self.arguments_read: dict[int, frozenset[str]] = {}

@@ -22,16 +22,18 @@ from cnc_ptp.machine.wiring import UNKNOWN_UNIT
 from cnc_ptp.nodes import process
 from cnc_ptp.nodes.bridge.coupling_services import PATIENCE as COUPLING_PATIENCE
 from cnc_ptp.nodes.client.latest_blocks import LatestBlocks
-from cnc_ptp.nodes.client.requests import check_integers, request_of
+from cnc_ptp.nodes.client.requests import request_of
 from cnc_ptp.nodes.polling_node import PollingNode
-from cnc_ptp.nodes.topics import COUPLING_SERVICES, SERIES_SERVICES, SERVICES
-from cnc_ptp.protocol.commands import COMMANDS, FILE_CONTENTS, UNKNOWN_COMMAND, Arguments
+from cnc_ptp.nodes.topics import COUPLING_SERVICES, RECORDER, RECORDER_SERVICES, SERIES_SERVICES, SERVICES
+from cnc_ptp.protocol.commands import COMMANDS, FILE_CONTENTS, OPTIONAL_NUMBER, TEXT, UNKNOWN_COMMAND, Arguments
 from cnc_ptp.protocol.unit import PLC
 
 NO_MACHINE = 26135
 NO_ANSWER = 26136
 PATIENCE = 5.0
 """Seconds for the machine to be found (DDS announces itself every 3 s at the latest), and for an answer."""
+RECORDER_PATIENCE = 60.0
+"""Seconds for a snapshot to be written."""
 MARGIN = 1.0
 """Seconds that a call waits longer than the PLC does, which withdraws a coupling that no axis answers (26143)."""
 UNITS = {"channels": "channel", "axes": "axis", "spindles": "spindle"}
@@ -135,9 +137,8 @@ class MachineClient(PollingNode):
     # commands
 
     def ask(self, unit: str, command: str, arguments: Mapping[str, Any]) -> Any:
-        """The response to a command. Raises CncError 26136 when none comes in time, 22001 for too large an integer."""
+        """The response to a command. Raises CncError 26136 when none comes in time; `arguments`: check_sendable."""
         service = services_of(self.kinds[unit])[command]
-        check_integers(f"{self.kinds[unit]} {unit}: {command} refused", service, arguments)
         patience = COUPLING_PATIENCE + MARGIN if command in COUPLING_SERVICES else PATIENCE
         if (unit, command) not in self._askers:
             self._askers[unit, command] = self.create_client(service, f"{unit}/{command}")
@@ -145,6 +146,19 @@ class MachineClient(PollingNode):
         if answer is None:
             text = f"{self.kinds[unit]} {unit}: {command}: no answer within {patience:g} s"
             raise CncError(NO_ANSWER, text, "whether it was carried out is not known, see `cnc_ptp status`")
+        return answer
+
+    def ask_recorder(self, command: str, arguments: Mapping[str, Any]) -> Any:
+        """The response of the recorder. Raises CncError 26136 when none comes in time."""
+        service = RECORDER_SERVICES[command]
+        client: Client[Any, Any] = self.create_client(service, f"{RECORDER}/{command}")
+        answer = None
+        if self.spin_until(client.service_is_ready, PATIENCE):
+            answer = self._answer(client, request_of(service, arguments), RECORDER_PATIENCE)
+        self.destroy_client(client)
+        if answer is None:
+            text = f"{RECORDER}: {command}: no answer"
+            raise CncError(NO_ANSWER, text, "`cnc_ptp run` has a recorder with --record, --recorder or --keep")
         return answer
 
     def _answer(self, client: Client[Any, Any], request: Any, patience: float = PATIENCE) -> Any:
@@ -172,9 +186,17 @@ def connected(*, patience: float = PATIENCE) -> Iterator[MachineClient]:
 
 def services_of(kind: str) -> dict[str, Any]:
     """Command -> service type."""
+    if kind == RECORDER:
+        return RECORDER_SERVICES
     return SERVICES[kind] | ({**COUPLING_SERVICES, **SERIES_SERVICES} if kind == "axis" else {})
 
 
+RECORDER_COMMANDS: dict[str, Arguments] = {
+    "start": {"file": TEXT},
+    "stop": {},
+    "snapshot": {"file": TEXT, "seconds": OPTIONAL_NUMBER},
+}
+"""What the recorder can be told: it is no unit."""
 FIELDS = {"master_points": "table"}
 """Fields of services that hold an argument of another name."""
 
@@ -184,9 +206,11 @@ def arguments_of(kind: str, unit: str, command: str) -> Arguments:
 
     Raises CncError 22002 when there is none.
     """
+    if kind == RECORDER and command in RECORDER_COMMANDS:
+        return RECORDER_COMMANDS[command]
     service = services_of(kind).get(command)
     if service is None:
-        where = f"{kind} {unit}"
+        where = f"{kind} {unit}".rstrip()
         known = sorted(services_of(kind))
         if command == "jog" and kind == "axis":
             raise CncError(UNKNOWN_COMMAND, f"jog has no service, use: cnc_ptp jog {unit} + --speed ...", where=where)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -11,8 +10,6 @@ from cnc_ptp import msg
 from cnc_ptp.errors import CncError
 from cnc_ptp.nodes.unit.requests import NOT_GIVEN
 from cnc_ptp.protocol.commands import BAD_ARGUMENT
-
-INTEGER_FIELD = re.compile(r"(u?)int(\d+)")
 
 
 def request_of(service: Any, arguments: Mapping[str, Any]) -> Any:
@@ -63,18 +60,3 @@ def point_of(row: Sequence[Any]) -> msg.TrajectoryPoint:
 
 ROW_MESSAGES = {"setpoints": setpoint_of, "points": point_of}
 """Arguments whose rows are messages."""
-
-
-def check_integers(where: str, service: Any, arguments: Mapping[str, Any]) -> None:
-    """Raises CncError 22001 for an integer that the field of the service does not hold: ROS would wrap it around."""
-    fields = service.Request.get_fields_and_field_types()
-    for name, value in arguments.items():
-        if found := INTEGER_FIELD.fullmatch(fields.get(name, "")):
-            low, high = integer_range(found[1] == "u", int(found[2]))
-            if not low <= value <= high:
-                reason = f"{name} = {value} is not within {low} … {high}"
-                raise CncError(BAD_ARGUMENT, reason, "nothing was sent", where=where)
-
-
-def integer_range(unsigned: bool, bits: int) -> tuple[int, int]:
-    return (0, 2**bits - 1) if unsigned else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)

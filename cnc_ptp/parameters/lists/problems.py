@@ -22,7 +22,7 @@ class ListProblem(NamedTuple):
     line: str = ""
 
     def __str__(self) -> str:
-        line = self.line if len(self.line) <= SHOWN else f"{self.line[: SHOWN - 1]}…"
+        line = self.line if len(self.line) <= SHOWN else f"{self.line[: SHOWN - 3]}..."
         shown = f", in '{line}'" if line else ""
         return f"{self.place}: {self.text}{shown}; {NOTHING_WRITTEN}"
 

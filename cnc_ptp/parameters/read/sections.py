@@ -52,7 +52,7 @@ def checked_entry(entry: Entry, node: str, kind: str, letter: str) -> ParameterV
     key, indexes = split_indexes(entry.name)
     declaration = catalogue().by_key[kind].get(key)
     if declaration is None:
-        raise BadValue(errors.UNKNOWN_NAME, unknown_name(entry.name, node, kind))
+        raise BadValue(errors.UNKNOWN_NAME, unknown_name(entry.name, f"/{node}", kind))
     where = declaration.subject(indexes, node)
     for index, array in zip(indexes, catalogue().sizes(declaration), strict=True):
         if index >= array.size:
@@ -68,10 +68,13 @@ def checked_entry(entry: Entry, node: str, kind: str, letter: str) -> ParameterV
 
 
 def unknown_name(ros_name: str, node: str, kind: str) -> str:
-    """Text for a name that the node's lists do not have, with the nearest one, or the nodes that have it."""
+    """Text for a name that the node's lists do not have, with the nearest one, or the nodes that have it.
+
+    `node`: the name of the unit, in a file with the slash of its section.
+    """
     lists = catalogue()
     key, _ = split_indexes(ros_name)
-    text = f"{kind} /{node} has no parameter {shown(ros_name)}"
+    text = f"{kind} {node} has no parameter {shown(ros_name)}"
     owners = [other for other, keys in lists.by_key.items() if key in keys]
     if owners:
         declaration = lists.by_key[owners[0]][key]

@@ -130,7 +130,7 @@ class ToolReader(Reader):
             self.take(Record(tool, tool, self.place(key), common))
         else:
             limit = catalogue().arrays["wz"].size - 1
-            text = f"tool T{tool} needs D numbers of its own (d: …), its number is above {limit}"
+            text = f"tool T{tool} needs D numbers of its own (d: ...), its number is above {limit}"
             self.add(errors.OUT_OF_RANGE, key, text)
 
     def take(self, record: Record) -> None:

@@ -52,5 +52,5 @@ def not_had(own: ParameterSet, parameter: Parameter) -> str:
     letter = own.axis_type
     if letter and letter not in declaration.axes:
         fitting = " and ".join(AXIS_LETTERS[axis] for axis in declaration.axes)
-        return f"{name}: only {fitting} have this parameter, /{own.node} is one of the {AXIS_LETTERS[letter]}"
+        return f"{name}: only {fitting} have this parameter, {own.node} is one of the {AXIS_LETTERS[letter]}"
     return ""

@@ -55,6 +55,11 @@ ROUNDING: Final = 1e-9
 """Part of a direction, and of a curvature, by which it may change without being a jump."""
 KINK_SHARE: Final = 0.5
 """Part of the jerk of an axis that a kink may take; half of it each where velocity and acceleration step."""
+LARGEST_BULGE: Final = 0.5
+"""Part of the larger of two unequal distances by which the curve may leave the path; between two lines it never does.
+
+Without it, a long distance on one side would carry the curvature of a small arc on the other far out.
+"""
 STEPS: Final = 8
 """Newton steps to the largest distance; the first value is at most four times that."""
 
@@ -190,8 +195,11 @@ def distances(
         return min(before, contour.pre_dist), min(after, contour.post_dist)
     parts = EVEN
     if contour.mode == DIST and contour.pre_dist != contour.post_dist:
-        before, after = min(before, contour.pre_dist), min(after, contour.post_dist)
         parts = UNEVEN
+        before, after = min(before, contour.pre_dist), min(after, contour.post_dist)
+        bulge = LARGEST_BULGE * max(before, after)
+        limit = largest_distance(deviation(a, b, end, start, path_axes, parts), bulge)
+        before, after = shortened(before, after, limit)
     else:
         wanted = contour.pre_dist
         if contour.mode != DIST:
@@ -201,9 +209,14 @@ def distances(
         for axis in range(len(end)):
             if axis not in path_axes:
                 limit = largest_distance(deviation(a, b, end, start, (axis,), parts), contour.track_dev)
-                shorter = min(1.0, limit / max(before, after))
-                before, after = before * shorter, after * shorter
+                before, after = shortened(before, after, limit)
     return before, after
+
+
+def shortened(before: float, after: float, limit: float) -> tuple[float, float]:
+    """Both distances in their ratio, neither above the limit."""
+    larger = max(before, after)
+    return (before, after) if larger <= limit else (before * limit / larger, after * limit / larger)
 
 
 def room(span: Span, contour: Contour) -> float:

@@ -172,9 +172,15 @@ class LookAhead:
                 break
             self._time = time
             if self._profile is not None:
-                self.state = self._profile.state_at(time)
+                self.state = self._in_part(self._profile.state_at(time))
             rows.append(self.state)
         return rows
+
+    def _in_part(self, state: MotionState) -> MotionState:
+        """Within a microsecond before a stop u may be rounded to its place, where the next part begins."""
+        if state[0] < self._planned_end:
+            return state
+        return (nextafter(self._planned_end, 0.0), state[1], state[2], state[3])
 
     def set_override(self, override: float) -> None:
         """Acts from the next knot of the plan on."""

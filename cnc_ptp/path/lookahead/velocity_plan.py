@@ -84,21 +84,21 @@ def caps_of(cells: list[PathCell], override: float, delay: int, before: float) -
     Before cell `delay` what was planned before may be kept, though it is above the feed; but not more
     than the feed with which it was planned.
     """
-    factor, former = override * override, before * before
-    own: list[float] = []
-    kept: list[float] = []
-    for index, cell in enumerate(cells):
-        feed = cell.feed * factor
-        if index < delay:
-            kept.append(min(cell.limit, MARGIN * cell.planned, max(cell.planned, cell.feed * former)))
-            feed = max(feed, kept[index])
-        own.append(min(cell.limit, feed))
+    caps = with_neighbours([min(cell.limit, cell.feed * override * override) for cell in cells])
+    if delay > 0:
+        former = with_neighbours([min(cell.limit, cell.feed * before * before) for cell in cells])
+        for index, cell in enumerate(cells[:delay]):
+            kept = min(cell.limit, MARGIN * cell.planned, max(cell.planned, former[index]))
+            caps[index] = max(caps[index], kept)
+    return caps
+
+
+def with_neighbours(own: list[float]) -> list[float]:
+    """The smallest of each value and those beside it."""
     caps = list(own)
     for index in range(1, len(own)):
         caps[index] = min(caps[index], own[index - 1])
         caps[index - 1] = min(caps[index - 1], own[index])
-    for index, square in enumerate(kept):
-        caps[index] = max(caps[index], square)
     return caps
 
 

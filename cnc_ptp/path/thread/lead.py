@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from typing import Final, Protocol
 
-from cnc_ptp.motion import Limits, Profile, plan_to_position
+from cnc_ptp.motion import Limits, plan_to_position
 from cnc_ptp.motion.setpoints import MotionState
 
 LOOKS: Final = 8
@@ -80,7 +80,7 @@ class QuickFading:
 
     def __init__(self, mismatch: Mismatch, limits: Limits) -> None:
         e, rate, gain = mismatch
-        self._profile: Final[Profile] = plan_to_position(e, rate, gain, 0.0, limits, direct=True)
+        self._profile = plan_to_position(e, rate, gain, 0.0, limits, direct=True)
 
     def at(self, t: float) -> MotionState:
         """As Fading."""

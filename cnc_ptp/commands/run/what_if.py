@@ -1,0 +1,88 @@
+"""`cnc_ptp replay --from … --set …`: a recorded run computed again with something changed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from cnc_ptp.commands.look.diff import check_diff_page, show_difference
+from cnc_ptp.machine.program_files import read_file, read_program
+from cnc_ptp.machine.run_entries import load_arguments, program_search
+from cnc_ptp.machine.wiring import unit_kinds
+from cnc_ptp.parameters import load_machine
+from cnc_ptp.plc.scenario import Entry, parse_scenario
+from cnc_ptp.recording.offline_run import write
+from cnc_ptp.recording.origin import origin
+from cnc_ptp.recording.overwriting import check_recording
+from cnc_ptp.recording.run_inputs import RunInputs
+from cnc_ptp.recording.what_if import Change, WhatIf
+from cnc_ptp.recording.writer import Recording
+
+
+def what_if(
+    recording: str,
+    *,
+    begin: float,
+    end: float | None,
+    parameters: tuple[str, ...],
+    override: float | None,
+    program: str | None,
+    commands: str | None,
+    output: str | None,
+    diff: bool,
+    page: str | None = None,
+) -> int:
+    """Computes, records to `output`; prints the difference if there is no output, or `diff` or a page asks for it."""
+    check_recording(output, recording=recording, NC_program=program, commands=commands)
+    check_diff_page(page, recording=recording, NC_program=program, commands=commands)
+    with RunInputs(recording) as recorded, TemporaryDirectory() as folder:
+        change = Change(begin, end, parameters, override, load_of(recorded, program), entries_of(recorded, commands))
+        run = WhatIf(recorded, change)
+        path = output or str(Path(folder) / "what_if.mcap")
+        refused = compute(run, recorded, path)
+        print(f"note: {run.note}" if run.note else "computed from 0 s")
+        if recorded.plc_file:
+            text = "is not executed again; what it took time for is acknowledged at once"
+            print(f"note: the PLC {recorded.plc_file} {text}")
+        for text in refused:
+            print(f"note: {text}")
+        for channel in run.running:
+            print(f"note: the program of {channel} has not ended; --to a later time computes more of it")
+        if diff or page or output is None:
+            names = (Path(recording).name, Path(output).name if output else "changed")
+            show_difference(recording, path, page, names)
+    return 0
+
+
+def compute(run: WhatIf, recorded: RunInputs, path: str) -> list[str]:
+    """Records the run; texts of the commands that were refused and had not been in the recorded run."""
+    known = {(record.cycle, record.target, record.command) for record in recorded.commands if not record.accepted}
+    refused: list[str] = []
+    notes = {"what_if_of": recorded.path.name, **origin()}
+    with Recording(path, run.machine_text, recorded.start_ns, recorded.cycle_time_ns, notes=notes) as recording:
+        for outputs in run.run():
+            write(recording, outputs)
+            for record in [record for output in outputs.values() for record in output.records if not record.accepted]:
+                if (record.cycle, record.target, record.command) not in known:
+                    at = record.cycle * recorded.cycle_time_ns * 1e-9
+                    refused.append(f"{record.command} to {record.target} at {at:g} s is refused: {record.message}")
+    return refused
+
+
+def load_of(recorded: RunInputs, program: str | None) -> dict[str, object] | None:
+    """Arguments of `load` for a program file."""
+    if program is None:
+        return None
+    machine = load_machine(recorded.machine_yaml, f"{recorded.path}:machine.yaml")
+    text, files = read_program(program, program_search(machine))
+    return load_arguments(program, text, files)
+
+
+def entries_of(recorded: RunInputs, commands: str | None) -> list[Entry]:
+    """Those of a scenario file, whose times are those of the run."""
+    if commands is None:
+        return []
+    machine = load_machine(recorded.machine_yaml, f"{recorded.path}:machine.yaml")
+    folder = Path(commands).parent
+    text = read_file("scenario", commands)
+    return parse_scenario(text, commands, unit_kinds(machine), lambda what, path: read_file(what, str(folder / path)))

@@ -1,0 +1,73 @@
+"""Checkpoints of a run: states of all units in its recording, so that a replay may begin near any time."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.offline import OfflineMachine
+from cnc_ptp.parameters import MachineParameters
+from cnc_ptp.recording.mcap_chunks import CORRUPT
+from cnc_ptp.recording.run_inputs import RunInputs
+from cnc_ptp.recording.writer import CHECKPOINT_TEXT, Recording
+from cnc_ptp.state.faults import DAMAGED, OTHER_VERSION
+from cnc_ptp.state.machine_state import MachineState, StateStore
+
+CHECKPOINT_SECONDS: Final = 10.0
+"""Machine time between two checkpoints. A replay computes so much more than it was asked for."""
+NO_CHECKPOINTS: Final = "the recording has no checkpoints, as none has that was made in the graph or without them"
+
+
+class Checkpoints:
+    """Writes a checkpoint into a recording whenever its time has come."""
+
+    def __init__(self, recording: Recording, parameters: MachineParameters, seconds: float) -> None:
+        self._error: CncError | None = None
+        self._missing: list[float] = []
+        """When there should have been one, s."""
+        self._cycle_time = parameters.cycle_time_us * 1e-6
+        self._recording, self._store = recording, StateStore(parameters)
+        self._cycles = max(1, round(seconds * 1e6 / parameters.cycle_time_us))
+        self._next = self._cycles
+        self._texts: set[str] = set()
+
+    @property
+    def fault(self) -> str:
+        """Why checkpoints are missing, which, and what that means; empty if none is."""
+        if self._error is None:
+            return ""
+        first, last = self._missing[0], self._missing[-1]
+        when = f"at {first:g} s" if first == last else f"from {first:g} s to {last:g} s"
+        return f"{self._error} {when}: a replay from then on begins at an older checkpoint, or at 0 s"
+
+    def watch(self, machine: OfflineMachine) -> None:
+        """The machine has computed a block."""
+        if machine.next_cycle < self._next:
+            return
+        self._next = machine.next_cycle + self._cycles
+        try:
+            state = self._store.encode(machine)
+        except CncError as error:
+            self._error = self._error or error
+            self._missing.append(machine.next_cycle * self._cycle_time)
+            return
+        for digest in self._store.texts.keys() - self._texts:
+            self._texts.add(digest)
+            self._recording.attachment(f"{CHECKPOINT_TEXT}{digest}", "text/plain", self._store.texts[digest])
+        self._recording.checkpoint(machine.next_cycle, state)
+
+
+def state_before(recorded: RunInputs, machine: MachineParameters, cycle: int) -> tuple[MachineState | None, str]:
+    """The newest state of a recording at or before `cycle` that this kernel can restore; and why not a newer one."""
+    if not recorded.checkpoints:
+        return None, NO_CHECKPOINTS
+    store, why = StateStore(machine), ""
+    store.texts.update(recorded.checkpoint_texts())
+    for first in sorted((first for first in recorded.checkpoints if first <= cycle), reverse=True):
+        try:
+            return store.restore(recorded.checkpoint(first)), why
+        except CncError as error:
+            if error.number not in (DAMAGED, OTHER_VERSION, CORRUPT):
+                raise
+            why = why or str(error)
+    return None, why or "the recording has no checkpoint before it"

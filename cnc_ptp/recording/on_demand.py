@@ -1,0 +1,352 @@
+"""Recordings that begin and end while a machine runs, and snapshots of its last seconds, from memory.
+
+A file has every block of every unit from a first to a last cycle. What was asked for is carried out when the blocks up
+to its last cycle are there, and a moment later, because commands and events may come after the blocks of their cycle.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.protocol.blocks import CommandRecord, CycleBlock, CycleTick, Event, Severity
+from cnc_ptp.recording.memory import BLOCK, RAW, TICK, History, Item, LastSeconds, write_record
+from cnc_ptp.recording.origin import RECORD_WHEN, WITHOUT, origin
+from cnc_ptp.recording.settings import Settings
+from cnc_ptp.recording.trigger import Condition
+from cnc_ptp.recording.writer import Recording
+from cnc_ptp.recording.writing_place import require_new
+from cnc_ptp.wire.block_codec import codec_of, head_of
+from cnc_ptp.wire.stamps import Stamps
+
+RECORDER = "recorder"
+ALREADY_RECORDING = 26190
+NOT_RECORDING = 26191
+NOTHING_KEPT = 26193
+SNAPSHOT_TAKEN = 26194
+SNAPSHOT_FAILED = 26195
+BAD_SECONDS = 26197
+LONGEST = 86400.0
+"""Seconds that may be asked for."""
+NOT_CHANGED = "nothing was changed"
+SETTLE = 0.2
+"""Seconds after the last block in which commands and events of its cycles may still come."""
+PATIENCE = 2.0
+"""Seconds for the blocks of a unit that may be lost."""
+AFTER = 0.5
+"""Seconds of the machine behind an error or a trigger that its snapshot has."""
+MARGIN = 1.0
+"""Seconds that are kept beyond those that may be asked for, because a snapshot waits for its last block."""
+MOST_SNAPSHOTS = 100
+"""That a run takes automatically."""
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """To a start, a stop or a snapshot."""
+
+    cycle: int = 0
+    warning: str = ""
+    error: CncError | None = None
+
+
+Done = Callable[[Answer], None]
+
+
+@dataclass(slots=True)
+class Job:
+    """Something that is carried out when all is there up to the cycle `end`, which it does not have."""
+
+    end: int
+    carry_out: Callable[[], Future[Answer]]
+    done: Done
+    deadline: float = math.inf
+    """Set at the first look."""
+    settled_at: float = math.inf
+
+
+@dataclass(frozen=True, slots=True)
+class Snapshots:
+    """`keep`: seconds in memory. `folder`: for snapshots at errors, and when the condition `when` becomes true."""
+
+    keep: float = 0.0
+    folder: Path | None = None
+    when: Condition | None = None
+
+
+class OnDemand:
+    """Takes what a recording takes; hands it on to the one that is being written, if any.
+
+    Raises CncError of Recording.
+    """
+
+    def __init__(
+        self,
+        machine_yaml: str,
+        stamps: Stamps,
+        units: Iterable[str],
+        *,
+        current: Recording | None = None,
+        first_cycle: int = 0,
+        settings: Settings,
+        snapshots: Snapshots,
+        publish: Callable[[Event], None],
+    ) -> None:
+        """`current`: a recording from the start of the run on. `first_cycle`: of the first tick. `publish`: events."""
+        self.stamps = stamps
+        self.current = current
+        self._machine_yaml, self._settings, self._snapshots = machine_yaml, settings, snapshots
+        self._publish = publish
+        self._first_cycle = first_cycle
+        self._begin, self._end = 0, math.inf
+        """Cycles that the present recording has."""
+        self._next = dict.fromkeys(units, first_cycle)
+        self._tick_end = self._tick_begin = first_cycle
+        self._history = History()
+        keeps = snapshots.keep > 0.0
+        self._kept = LastSeconds(self._cycles(snapshots.keep + MARGIN)) if keeps else None
+        self._jobs: list[Job] = []
+        self._writing: list[tuple[Future[Answer], Done]] = []
+        self._writer = ThreadPoolExecutor(max_workers=1, thread_name_prefix="snapshot")
+        self._taken_by_itself = 0
+        self._covered = -1
+        """Cycle up to which the last snapshot of its own goes."""
+        self._held_before = True  # a condition that is true at the start has not become true
+
+    # what a recording takes
+
+    def tick(self, tick: CycleTick, scheduled_monotonic_ns: int = 0) -> None:
+        self._tick_begin, self._tick_end = tick.first_cycle, tick.first_cycle + tick.count
+        if self._kept is not None:
+            self._kept.add(tick.first_cycle, 100, TICK, tick, scheduled_monotonic_ns)
+        if self.current is not None and self._begin <= tick.first_cycle < self._end:
+            self.current.tick(tick, scheduled_monotonic_ns)
+
+    def block(self, name: str, block: CycleBlock, *, handshakes: bool = True) -> None:
+        if self._kept is not None:
+            self.encoded_block(name, type(block), codec_of(type(block)).encode(block, self.stamps))
+            return
+        self._next[name] = block.first_cycle + block.count
+        if self.current is not None and self._begin <= block.first_cycle < self._end:
+            self.current.block(name, block, handshakes=handshakes)
+
+    def encoded_block(self, name: str, block_class: type, data: bytes) -> None:
+        """`data` has a plain header (with_plain_header)."""
+        _, cycle, count = head_of(data)
+        self._next[name] = cycle + count
+        if self._kept is not None:
+            self._kept.add(cycle, len(data), BLOCK, name, block_class, data)
+        if self.current is not None and self._begin <= cycle < self._end:
+            self.current.encoded_block(name, block_class, data)
+        when = self._snapshots.when
+        if when is not None and when.unit == name:
+            self._look_for(when.holds(codec_of(block_class).decode(data)), cycle)
+
+    def event(self, event: Event) -> None:
+        self._history.add(event)
+        if self.current is not None and event.cycle < self._end:
+            self.current.event(event)
+        if event.severity == Severity.ERROR and event.source != RECORDER:
+            self._snapshot_by_itself("error", event.cycle)
+
+    def command(self, record: CommandRecord) -> None:
+        self._history.add(record)
+        if self.current is not None and record.cycle < self._end:
+            self.current.command(record)
+
+    def raw(self, topic: str, type_name: str, cdr: bytes, log_time_ns: int) -> None:
+        if self._kept is not None:
+            self._kept.add(self._tick_begin, len(cdr), RAW, topic, type_name, cdr, log_time_ns)
+        if self.current is not None and self._tick_begin < self._end:
+            self.current.raw(topic, type_name, cdr, log_time_ns)
+
+    def flush_if_due(self, now: float) -> None:
+        """`now` in s of any steady clock."""
+        if self.current is not None:
+            self.current.flush_if_due(now)
+        self._carry_out(now)
+
+    def close(self) -> None:
+        """Carries out what was asked for, with what is there, and closes the present recording."""
+        self._carry_out(math.inf)
+        try:
+            if self.current is not None:
+                self.current.close()
+        finally:
+            self._writer.shutdown()
+            self._answer_written()
+
+    # what is asked for
+
+    def start(self, file: str) -> Answer:
+        """Begins a recording with the next block. Raises CncError 26113, 26190, 26192."""
+        refused = f"{RECORDER}: start refused"
+        if self.current is not None:
+            reason = f"recording {self.current.path} is being written"
+            raise CncError(ALREADY_RECORDING, reason, NOT_CHANGED, where=refused)
+        require_new(file, where=refused)
+        begin = self._newest
+        self.current = self._make(file, self._settings, begin, f"asked for, from cycle {begin} on")
+        self._begin, self._end = begin, math.inf
+        for record in self._history.before(begin):
+            write_record(self.current, record)
+        return Answer(begin)
+
+    def stop(self, done: Done) -> None:
+        """Ends the present recording. Raises CncError 26191."""
+        if self.current is None or self._end != math.inf:
+            why = "no recording is being written" if self.current is None else "the recording is ending already"
+            raise CncError(NOT_RECORDING, why, NOT_CHANGED, where=f"{RECORDER}: stop refused")
+        self._end = self._newest
+        self._jobs.append(Job(self._newest, self._close_current, done))
+
+    def snapshot(self, file: str, seconds: float, done: Done) -> None:
+        """Writes the last `seconds`, 0 or NaN: all that is kept. Raises CncError 26113, 26192, 26193, 26197."""
+        refused = f"{RECORDER}: snapshot refused"
+        seconds = 0.0 if math.isnan(seconds) else seconds
+        if not 0.0 <= seconds <= LONGEST:
+            reason = f"seconds = {seconds:g} is not within 0 ... {LONGEST:g} s"
+            raise CncError(BAD_SECONDS, reason, NOT_CHANGED, where=refused, seconds=seconds, high=LONGEST)
+        if self._kept is None:
+            reason = "nothing is kept in memory; `cnc_ptp run` keeps the last seconds with --keep"
+            raise CncError(NOTHING_KEPT, reason, NOT_CHANGED, where=refused)
+        if self._kept.first_whole(self._next) is None:
+            raise CncError(NOTHING_KEPT, "no block of all units has come yet", NOT_CHANGED, where=refused)
+        require_new(file, where=refused)
+        self._ask_for_snapshot(file, seconds, self._newest, done)
+
+    def fail(self) -> None:
+        """The present recording could not be written: it ends here. Raises CncError 26007 where it has no room."""
+        failed, self.current = self.current, None
+        if failed is not None:
+            failed.close()
+
+    # automatic snapshots
+
+    def _look_for(self, holds: bool, cycle: int) -> None:
+        if holds and not self._held_before:
+            self._snapshot_by_itself("trigger", cycle)
+        self._held_before = holds
+
+    def _snapshot_by_itself(self, why: str, cycle: int) -> None:
+        """Unless the last one has this cycle."""
+        folder = self._snapshots.folder
+        if folder is None or cycle < self._covered or self._taken_by_itself == MOST_SNAPSHOTS:
+            return
+        self._taken_by_itself += 1
+        self._covered = cycle + self._cycles(AFTER)
+        file = free_name(folder, f"{why}_{cycle}")
+        self._ask_for_snapshot(
+            str(file), self._snapshots.keep + AFTER, self._covered, lambda answer: self._tell(file, answer)
+        )
+
+    def _tell(self, file: Path, answer: Answer) -> None:
+        if answer.error is None:
+            text = f"{RECORDER}: snapshot {file} has cycles from {answer.cycle} on"
+            self._publish(Event(self._tick_begin, RECORDER, Severity.INFO, SNAPSHOT_TAKEN, text))
+        else:
+            text = f"{RECORDER}: snapshot {file} was not taken: {answer.error.reason}; the run continues"
+            self._publish(Event(self._tick_begin, RECORDER, Severity.WARNING, SNAPSHOT_FAILED, text))
+
+    # carrying out
+
+    def _ask_for_snapshot(self, file: str, seconds: float, end: int, done: Done) -> None:
+        def carry_out() -> Future[Answer]:
+            return self._write_snapshot(file, seconds, min(end, self._newest))
+
+        self._jobs.append(Job(end, carry_out, done))
+
+    def _carry_out(self, now: float) -> None:
+        for job in [*self._jobs]:
+            if self._is_due(job, now):
+                self._jobs.remove(job)
+                self._writing.append((job.carry_out(), job.done))
+        self._answer_written()
+
+    def _is_due(self, job: Job, now: float) -> bool:
+        if job.deadline == math.inf:
+            job.deadline = now + PATIENCE + max(0, job.end - self._newest) * self.stamps.cycle_time_ns * 1e-9
+        if job.settled_at == math.inf and min(self._next.values()) >= job.end:
+            job.settled_at = now + SETTLE
+        return now >= min(job.settled_at, job.deadline)
+
+    def _answer_written(self) -> None:
+        for future, done in [*self._writing]:
+            if future.done():
+                self._writing.remove((future, done))
+                done(future.result())
+
+    def _close_current(self) -> Future[Answer]:
+        """At once: whoever starts the next one must find this one closed."""
+        answer = Answer(int(self._end))
+        try:
+            self.fail()
+        except CncError as error:
+            answer = Answer(error=error)
+        future: Future[Answer] = Future()
+        future.set_result(answer)
+        return future
+
+    def _write_snapshot(self, file: str, seconds: float, end: int) -> Future[Answer]:
+        """In a thread of its own: in one process with all other nodes nothing may wait for it."""
+        assert self._kept is not None
+        whole = self._kept.first_whole(self._next) or 0
+        wanted = self._kept.begin_of_block(end - self._cycles(seconds or self._snapshots.keep))
+        begin = max(wanted, whole)
+        items, records = self._kept.between(begin, end), self._history.before(end)
+        warning = ""
+        if seconds and wanted < whole:
+            kept = (end - begin) * self.stamps.cycle_time_ns * 1e-9
+            warning = f"{RECORDER}: {kept:g} s were kept and are in the snapshot, {seconds:g} s were asked for"
+        return self._writer.submit(self._write_items, file, begin, end, items, records, warning)
+
+    def _write_items(
+        self, file: str, begin: int, end: int, items: list[Item], records: list[Any], warning: str
+    ) -> Answer:
+        try:
+            settings = Settings(self._settings.compression, files=self._settings.files)
+            with self._make(file, settings, begin, f"snapshot of cycles {begin} to {end - 1}") as recording:
+                for record in records:
+                    write_record(recording, record)
+                for item in items:
+                    item.write(recording)
+        except CncError as error:
+            return Answer(error=error)
+        return Answer(begin, warning)
+
+    def _make(self, file: str, settings: Settings, begin: int, when: str) -> Recording:
+        notes = {**origin(), RECORD_WHEN: when, **without_what(self._first_cycle, self._history.forgotten)}
+        return Recording(
+            file, self._machine_yaml, self.stamps.start_ns, self.stamps.cycle_time_ns, notes=notes, settings=settings
+        )
+
+    @property
+    def _newest(self) -> int:
+        """The cycle with which the next block begins: no unit has come further."""
+        return max(self._tick_end, *self._next.values())
+
+    def _cycles(self, seconds: float) -> int:
+        return round(seconds * 1e9 / self.stamps.cycle_time_ns)
+
+
+def without_what(first_cycle: int, forgotten: int = -1) -> dict[str, str]:
+    """For the metadata: why a run cannot be computed again, if it cannot."""
+    if first_cycle > 0:
+        return {WITHOUT: f"the recorder came at cycle {first_cycle}, commands before it are not recorded"}
+    if forgotten >= 0:
+        return {WITHOUT: f"commands up to cycle {forgotten} were forgotten before it began, there were too many"}
+    return {}
+
+
+def free_name(folder: Path, stem: str) -> Path:
+    """`stem.mcap`, or with a number where that exists."""
+    file, number = folder / f"{stem}.mcap", 0
+    while file.exists():
+        number += 1
+        file = folder / f"{stem}_{number}.mcap"
+    return file

@@ -1,0 +1,86 @@
+"""What a recording says of itself in its metadata: its origin, its format, whether it can be computed again."""
+
+from __future__ import annotations
+
+import platform
+import subprocess
+from collections.abc import Collection, Mapping
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+
+import cnc_ptp
+from cnc_ptp import KERNEL
+from cnc_ptp.errors import CncError
+
+FROM_THE_FUTURE = 26016
+FOREIGN = 26017
+NOT_COMPUTABLE = 26018
+FORMAT = "format"
+"""Key of the metadata: version of what a recording holds."""
+FORMAT_VERSION = 1
+"""Counts up when an older reader would take something for what it is not; new topics and fields alone do not."""
+RECORD_WHEN = "record_when"
+"""Key: the condition of a recording that does not begin with the run, or who has begun it."""
+WITHOUT = "not_computable"
+"""Key: what is missing for the run to be computed again, if anything."""
+PATIENCE = 5.0
+"""Seconds for git."""
+
+
+def origin() -> dict[str, str]:
+    """What a run was computed by: version and revision of the sources, kind of the kernel, Python, computer."""
+    return {
+        "version": version("cnc_ptp"),
+        "revision": revision(),
+        "kernel": KERNEL.kind,
+        "python": platform.python_version(),
+        "host": platform.node(),
+        "system": platform.platform(),
+    }
+
+
+@cache
+def revision(folder: Path = Path(cnc_ptp.__file__).parents[1]) -> str:
+    """Of the git checkout that `folder` is, with `-dirty` where files were changed; empty for an installed package."""
+    if not (folder / ".git").exists():
+        return ""
+    command = ["git", "-C", str(folder), "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"]
+    try:
+        told = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE, check=True)
+    except (OSError, subprocess.SubprocessError):
+        return ""
+    return told.stdout.strip()
+
+
+def require_known_format(path: Path, metadata: Mapping[str, str]) -> None:
+    """Raises CncError 26016 for a recording of a newer version; those without a format are the oldest."""
+    found = metadata.get(FORMAT, "0")
+    if not found.isdecimal() or int(found) > FORMAT_VERSION:
+        by = metadata.get("version", "")
+        raise CncError(
+            FROM_THE_FUTURE,
+            f"recording {path}: has format {found}{f' of cnc_ptp {by}' if by else ''}, this version reads up to "
+            f"format {FORMAT_VERSION}",
+            "nothing was read, use a newer version of cnc_ptp",
+        )
+
+
+def require_own(path: Path, metadata: Mapping[str, str], states: Collection[str]) -> None:
+    """Raises CncError 26017 for an MCAP file of another program: neither our metadata nor `states` of ours."""
+    if not metadata and not states:
+        raise CncError(
+            FOREIGN,
+            f"recording {path}: is not of cnc_ptp",
+            "nothing was drawn; `cnc_ptp export` reads its topics",
+        )
+
+
+def require_computable(path: Path, metadata: Mapping[str, str]) -> None:
+    """Raises CncError 26018 for a recording that says that something is missing for it."""
+    if WITHOUT in metadata:
+        raise CncError(
+            NOT_COMPUTABLE,
+            f"recording {path}: {metadata[WITHOUT]}",
+            "the run cannot be computed again, its states can be read and drawn",
+        )

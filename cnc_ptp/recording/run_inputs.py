@@ -1,0 +1,165 @@
+"""What is needed to compute a recorded run again, without reading all of the recording: an hour begins like a second.
+
+Machine file, commands and checkpoints are found by the index of the file; blocks are read when their time comes.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from itertools import chain
+from pathlib import Path
+from types import TracebackType
+
+from mcap_ros2.decoder import DecoderFactory
+
+from cnc_ptp.protocol.blocks import CommandRecord
+from cnc_ptp.recording.mcap_file import METADATA
+from cnc_ptp.recording.mcap_index import ChunkPlace, McapIndex
+from cnc_ptp.recording.origin import require_computable, require_known_format
+from cnc_ptp.recording.parts import files_of
+from cnc_ptp.recording.reader import COMMAND, STATE_TYPES, TICK, RawMessage, command_record
+from cnc_ptp.recording.writer import CHECKPOINT, CHECKPOINT_TEXT, MACHINE_FILE, PLC_FILE
+from cnc_ptp.wire.schemas import full_name
+from cnc_ptp.wire.ticks import decode_tick
+
+
+class RunInputs:
+    """An open recording, in one file or in parts; it is closed at the end of a `with` block.
+
+    machine_yaml  empty if it has none
+    commands      in the order of their cycles
+    checkpoints   cycles before which there is one
+    plc_file      name of the PLC in a file that served the run, empty if none did
+    end           the cycle after the last one
+
+    Raises CncError 26001 to 26003, 26014, 26016 (newer format), 26018 (commands are missing).
+    """
+
+    def __init__(self, path: str | Path) -> None:
+        self.path = Path(path)
+        self._parts = [_Part(file) for file in files_of(self.path)]
+        values: dict[str, str] = {}
+        for metadata in chain.from_iterable(part.index.metadata for part in self._parts):
+            if metadata.name == METADATA:
+                require_known_format(self.path, metadata.metadata)
+                values |= metadata.metadata
+        require_computable(self.path, values)
+        self.start_ns = int(values.get("start_ns", "0"))
+        self.cycle_time_ns = int(values.get("cycle_time_ns", "1000000"))
+        self._attachments = {name: part for part in self._parts for name in part.index.attachments}
+        self.machine_yaml = self._attached(MACHINE_FILE).decode(errors="replace")
+        numbers = [name.removeprefix(CHECKPOINT) for name in self._attachments if name.startswith(CHECKPOINT)]
+        self.checkpoints = sorted(int(number) for number in numbers if number.isdecimal())
+        names = [name for name in self._attachments if name.startswith(PLC_FILE)]
+        self.plc_file = names[0].removeprefix(PLC_FILE) if names else ""
+        commands = chain.from_iterable(part.commands() for part in self._parts)
+        self.commands = sorted(commands, key=lambda record: record.cycle)
+        self.end = self._end()
+
+    def checkpoint(self, cycle: int) -> bytes:
+        """The state before one of the cycles of `checkpoints`."""
+        return self._attached(f"{CHECKPOINT}{cycle}")
+
+    def checkpoint_texts(self) -> dict[str, str]:
+        """Long texts of the states by their digests."""
+        names = [name for name in self._attachments if name.startswith(CHECKPOINT_TEXT)]
+        return {
+            name.removeprefix(CHECKPOINT_TEXT): self._attached(name).decode(errors="surrogatepass") for name in names
+        }
+
+    def messages(self, types: Collection[str], first_cycle: int = 0) -> Iterator[RawMessage]:
+        """Messages of some types in log-time order, from the chunks that may have those of `first_cycle`."""
+        from_ns = self.start_ns + first_cycle * self.cycle_time_ns
+        return chain.from_iterable(part.messages(types, from_ns) for part in self._parts)
+
+    def close(self) -> None:
+        for part in self._parts:
+            part.index.close()
+
+    def __enter__(self) -> RunInputs:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def _attached(self, name: str) -> bytes:
+        """Empty if there is none of this name."""
+        return self._attachments[name].index.attached(name) if name in self._attachments else b""
+
+    def _end(self) -> int:
+        """By the time of the last message. One altered number must not make it endless, so others have to confirm it:
+
+        the last tick, or the number of cycles that a unit recorded.
+        """
+        times = [chunk.last_ns for part in self._parts for chunk in part.index.chunks]
+        states: Counter[str] = Counter()
+        for part in self._parts:
+            states.update(dict(part.state_counts()))
+        ends = [end for part in self._parts for end in part.tick_ends()]
+        last_ns, confirmed = max(times, default=self.start_ns - 1), max([*states.values(), *ends], default=0)
+        return min(max(0, last_ns - self.start_ns + self.cycle_time_ns) // self.cycle_time_ns, confirmed)
+
+
+class _Part:
+    """A file of the recording."""
+
+    def __init__(self, file: Path) -> None:
+        self.index = McapIndex(file)
+
+    def messages(self, types: Collection[str], from_ns: int = 0) -> Iterator[RawMessage]:
+        """Messages of some types in log-time order, from the chunks that may have those of `from_ns` or later."""
+        wanted = {id: name for id in self.index.channels if (name := self._type_of(id)) in types}
+        return self._in_order([chunk for chunk in self._chunks(wanted) if chunk.last_ns >= from_ns], wanted)
+
+    def commands(self) -> Iterator[CommandRecord]:
+        schema = next((each for each in self.index.schemas.values() if full_name(each.name) == COMMAND), None)
+        decode = DecoderFactory().decoder_for("cdr", schema) if schema else None
+        if decode is None:
+            return
+        for message in self.messages([COMMAND]):
+            yield command_record(decode(message.cdr))
+
+    def state_counts(self) -> Iterator[tuple[str, int]]:
+        """Topics of states and the numbers of their messages."""
+        for id, count in self.index.counts.items():
+            if self._type_of(id) in STATE_TYPES:
+                yield self.index.channels[id].topic, count
+
+    def tick_ends(self) -> Iterator[int]:
+        """The cycles behind the last ticks."""
+        wanted = {id: TICK for id in self.index.channels if self._type_of(id) == TICK}
+        for message in self._in_order(self._chunks(wanted)[-1:], wanted):
+            tick = decode_tick(message.cdr)
+            yield tick.first_cycle + tick.count
+
+    def _in_order(self, chunks: Sequence[ChunkPlace], wanted: Mapping[int, str]) -> Iterator[RawMessage]:
+        """`wanted`: types by channel. Chunks of one time are merged."""
+        waiting: list[tuple[int, int, RawMessage]] = []
+        serial = 0
+        for chunk in chunks:
+            while waiting and waiting[0][0] < chunk.first_ns:
+                yield heapq.heappop(waiting)[2]
+            for run in self.index.runs(chunk, [*wanted]):
+                topic, name = self.index.channels[run.channel_id].topic, wanted[run.channel_id]
+                for time, content in zip(run.head["log_time"].tolist(), run.contents, strict=True):
+                    message = RawMessage(topic, name, time, content.tobytes())
+                    heapq.heappush(waiting, (time, serial := serial + 1, message))
+        while waiting:
+            yield heapq.heappop(waiting)[2]
+
+    def _type_of(self, channel_id: int) -> str:
+        schema = self.index.schemas.get(self.index.channels[channel_id].schema_id)
+        return full_name(schema.name) if schema else ""
+
+    def _chunks(self, channels: Collection[int]) -> list[ChunkPlace]:
+        """Those that may have messages of some channels, in the order of their beginnings."""
+        found = [
+            chunk
+            for chunk in self.index.chunks
+            if channels and (not chunk.indexes or not chunk.indexes.keys().isdisjoint(channels))
+        ]
+        return sorted(found, key=lambda chunk: chunk.first_ns)

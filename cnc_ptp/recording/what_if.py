@@ -1,0 +1,230 @@
+"""A recorded run computed again with something changed: parameters, overrides, the program, further commands.
+
+Up to the time of the change all is as recorded, from the newest checkpoint on; from then on the change counts. Commands
+of the recording come at their cycles, whatever the changed run does.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.offline import OfflineMachine, Outputs
+from cnc_ptp.machine.wiring import build_units
+from cnc_ptp.parameters import MachineParameters, load_machine
+from cnc_ptp.parameters.changed import changed_text
+from cnc_ptp.plc.scenario import Entry
+from cnc_ptp.protocol.blocks import ChannelBlock, Command, CommandRecord, CycleBlock, PlcBlock, json_of
+from cnc_ptp.protocol.channel_states import ChannelStateCode
+from cnc_ptp.protocol.commands import COUPLINGS
+from cnc_ptp.protocol.unit import PLC
+from cnc_ptp.recording.checkpoints import state_before
+from cnc_ptp.recording.reader import RawMessage
+from cnc_ptp.recording.run_inputs import RunInputs
+from cnc_ptp.state.other_parameters import change_parameters
+from cnc_ptp.wire.block_codec import codec_of
+
+TIME_OUTSIDE: Final = 26154
+NO_MACHINE: Final = 26155
+NO_LOAD: Final = 26157
+NOTHING: Final = "nothing was computed"
+
+
+@dataclass(frozen=True)
+class Change:
+    """What is to be different from `begin` (s) on; the run is followed to `end` (s), None: as long as it was recorded.
+
+    parameters  unit.parameter=value
+    override    of all channels, percent; recorded ones no longer count
+    program     arguments of the command `load` in place of the recorded ones
+    commands    further ones, at their times
+    """
+
+    begin: float = 0.0
+    end: float | None = None
+    parameters: Sequence[str] = ()
+    override: float | None = None
+    program: Mapping[str, Any] | None = None
+    commands: Sequence[Entry] = field(default=())
+
+
+class WhatIf:
+    """The changed run. `note` says from where it was computed; `machine_text` and `machine` have the parameters."""
+
+    def __init__(self, recorded: RunInputs, change: Change) -> None:
+        """`recorded` stays open as long as it runs. Raises ParameterError, CncError 26153, 26154, 26155, 26157."""
+        if not recorded.machine_yaml:
+            reason = f"recording {recorded.path}: holds no attachment machine.yaml"
+            raise CncError(NO_MACHINE, reason, f"{NOTHING}, record it with cnc_ptp")
+        self._recorded, self._change = recorded, change
+        self._old = load_machine(recorded.machine_yaml, f"{recorded.path}:machine.yaml")
+        self.machine_text = recorded.machine_yaml
+        self.machine = self._old
+        if change.parameters:
+            self.machine_text = changed_text(recorded.machine_yaml, change.parameters)
+            self.machine = load_machine(self.machine_text, f"{recorded.path}:machine.yaml")
+        self._cycle_time = self._old.cycle_time_us * 1e-6
+        self.begin = self._block_at(change.begin)
+        self.end = recorded.end if change.end is None else self._end_at(change.end)
+        self._commands = self._recorded_commands()
+        self._require_load()
+        self.note = ""
+        self.running: list[str] = []
+        """Channels whose program has not ended so far."""
+        self._given = GivenByUnits(recorded, self.begin, self.begin - self._old.block_cycles)
+
+    def run(self) -> Iterator[Outputs]:
+        """All blocks from `begin` on. Raises CncError 26156 for parameters that make other parts of a unit."""
+        machine = self._at_begin()
+        if self.machine is not self._old:
+            runners, blocks = machine.parts
+            change_parameters(runners, self._old, self.machine)
+            changed = OfflineMachine(self.machine, build_units(self.machine, end_when_idle=False))
+            changed.go_on_from(machine.next_cycle, runners, blocks)
+            machine = changed
+        while machine.next_cycle < self.end:
+            outputs = machine.changed_tick(self._changed_commands(machine.next_cycle))
+            self.running = [name for name, output in outputs.items() if is_running(output.block)]
+            yield outputs
+
+    def _end_at(self, seconds: float) -> int:
+        """It may be later than what is recorded. Raises CncError 26154."""
+        if seconds < self._change.begin:
+            reason = f"--to {seconds:g} is before --from {self._change.begin:g}"
+            raise CncError(TIME_OUTSIDE, reason, NOTHING, value=seconds, limit=self._change.begin)
+        return round(seconds / self._cycle_time)
+
+    def _block_at(self, seconds: float) -> int:
+        """The first cycle of the block in which a time lies. Raises CncError 26154."""
+        duration = self._recorded.end * self._cycle_time
+        if not 0.0 <= seconds <= duration:
+            reason = f"--from {seconds:g} is not within the recorded time 0 ... {duration:g} s"
+            raise CncError(TIME_OUTSIDE, reason, NOTHING, value=seconds, limit=duration)
+        count = self._old.block_cycles
+        return round(seconds / self._cycle_time) // count * count
+
+    def _recorded_commands(self) -> dict[int, list[CommandRecord]]:
+        by_cycle: dict[int, list[CommandRecord]] = defaultdict(list)
+        for record in self._recorded.commands:
+            switches_plc = record.command in PLC_SWITCHES
+            if (record.target != PLC or switches_plc) and not is_refused_coupling(record, self._old):
+                by_cycle[record.cycle].append(record)
+        return by_cycle
+
+    def _require_load(self) -> None:
+        """Raises CncError 26157 where there is no program to be replaced."""
+        if self._change.program is None:
+            return
+        loads = [record.cycle for records in self._commands.values() for record in records if record.command == "load"]
+        if not any(cycle >= self.begin for cycle in loads):
+            last = f"the last one is loaded at {max(loads) * self._cycle_time:g} s" if loads else "none is loaded"
+            reason = f"--program takes the place of a program that is loaded after --from, and {last}"
+            raise CncError(NO_LOAD, reason, NOTHING)
+
+    def _at_begin(self) -> OfflineMachine:
+        """The machine as it was recorded before `begin`, with a PLC that serves what the recorded one served."""
+        machine = OfflineMachine(self._old, build_units(self._old, end_when_idle=False))
+        if self.begin:  # at 0 there is nothing to be restored
+            state, why = state_before(self._recorded, self._old, self.begin)
+            if state is None:
+                self.note = f"computed from 0 s: {why}"
+            else:
+                machine.go_on_from(*state)
+                self.note = f"computed from the checkpoint at {state.next_cycle * self._cycle_time:g} s"
+        while machine.next_cycle < self.begin:
+            given = [each for each in self._commands.get(machine.next_cycle, ()) if each.target != PLC]
+            machine.replay_tick(by_unit([Command.from_record(each) for each in given]))
+        plc = machine.runner(PLC)
+        for record in self._recorded.commands:
+            if record.target == PLC and record.command in PLC_SWITCHES and record.cycle < self.begin:
+                plc.command(Command.from_record(record))
+        plc.unit.take_events()
+        plc.unit.take_records()
+        return machine
+
+    def _changed_commands(self, cycle: int) -> dict[str, list[Command]]:
+        commands = [self._changed(record) for record in self._commands.get(cycle, ())]
+        given = [command for command in commands if command is not None]
+        if cycle == self.begin and self._change.override is not None:
+            given += [Command(name, "set_override", {"percent": self._change.override}) for name in self._old.channels]
+        end = cycle + self._old.block_cycles
+        for entry in self._change.commands:
+            if max(cycle, self.begin) <= round(entry.at / self._cycle_time) < end:
+                given.append(entry.command)
+        return by_unit(given)
+
+    def _changed(self, record: CommandRecord) -> Command | None:
+        change, command = self._change, Command.from_record(record)
+        if self._given.has(record):
+            return None
+        if change.override is not None and command.command == "set_override" and command.target in self._old.channels:
+            return None
+        if change.program is not None and command.command == "load":
+            return Command(command.target, "load", dict(change.program), command.id)
+        return command
+
+
+Given = tuple[int, str, str, str]
+"""Cycle, target, name and arguments of a command."""
+ANSWERS: Final = ("acknowledge", "coupling_answer", "gear_changed")
+RESTING: Final = (int(ChannelStateCode.IDLE), int(ChannelStateCode.READY))
+PLC_SWITCHES: Final = ("auto_acknowledge", "serve")
+
+
+BLOCK_TYPES: Final[dict[str, type[ChannelBlock] | type[PlcBlock]]] = {
+    "cnc_ptp/msg/ChannelBlock": ChannelBlock,
+    "cnc_ptp/msg/PlcBlock": PlcBlock,
+}
+
+
+class GivenByUnits:
+    """Commands of channels, and the answers of the PLC to what channels and spindles ask for from `begin` on.
+
+    Units give them again. Blocks are read as far as the run has come.
+    """
+
+    def __init__(self, recorded: RunInputs, begin: int, before: int) -> None:
+        """`before`: the cycle of the block before; what is asked for in it is answered after it."""
+        self._begin = begin
+        self._known: set[Given] = set()
+        self._requests: set[int] = set()
+        self._reached = -1
+        self._messages = recorded.messages(BLOCK_TYPES, max(0, before))
+
+    def has(self, record: CommandRecord) -> bool:
+        while self._reached <= record.cycle and (message := next(self._messages, None)) is not None:
+            self._take(message)
+        return (record.cycle, record.target, record.command, record.arguments_json) in self._known
+
+    def _take(self, message: RawMessage) -> None:
+        block = codec_of(BLOCK_TYPES[message.type_name]).decode(message.cdr)
+        self._reached = block.first_cycle
+        if block.first_cycle + 2 * block.count <= self._begin:
+            return
+        is_channel = isinstance(block, ChannelBlock)
+        if is_channel:
+            self._requests.update(request.id for request in block.requests)
+        for command in block.commands if block.first_cycle >= self._begin else ():
+            known = command.command != "acknowledge" or command.arguments.get("id") in self._requests
+            if is_channel or (command.command in ANSWERS and known):
+                self._known.add((block.first_cycle, command.target, command.command, json_of(command.arguments)))
+
+
+def is_running(block: CycleBlock) -> bool:
+    """A channel whose program has not ended."""
+    return isinstance(block, ChannelBlock) and int(block.state[-1]) not in RESTING
+
+
+def by_unit(commands: Sequence[Command]) -> dict[str, list[Command]]:
+    units: dict[str, list[Command]] = defaultdict(list)
+    for command in commands:
+        units[command.target].append(command)
+    return units
+
+
+def is_refused_coupling(record: CommandRecord, machine: MachineParameters) -> bool:
+    """It changed nothing, and the PLC's reason is not recorded: fed in again, it might be carried out."""
+    return not record.accepted and record.command in COUPLINGS and record.target in machine.axes

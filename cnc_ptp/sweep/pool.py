@@ -1,0 +1,141 @@
+"""Variants on Dask: processes of this computer, or workers of a scheduler elsewhere. No other file knows Dask."""
+
+from __future__ import annotations
+
+import logging
+import os
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import CancelledError
+from types import TracebackType
+from typing import Any
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.sweep.faults import NO_SCHEDULER, NOTHING, UNFIT_WORKERS, WORKER_LOST, sweep_package
+from cnc_ptp.sweep.results import Row, Variant
+from cnc_ptp.sweep.variant_run import Job, compute, failed
+
+PATIENCE = 10.0
+"""s for a scheduler that does not answer, or has no worker."""
+GLANCE = 0.2
+"""s between two looks at whether the sweep is to end."""
+IN_STOCK = 2
+"""Variants that are on their way for each thread of a worker."""
+KEPT = "what is finished is kept, the same command continues"
+
+
+class Pool:
+    """Workers for a `with` block.
+
+    Raises CncError 26013 without Dask, 26181 for a scheduler that is not there, 26186 for processes that do not start.
+
+    A variant whose worker dies is computed by another one. If that happens again and again it is computed alone at the
+    end, and fails if its worker dies then, too: the other variants on that worker were not at fault.
+    """
+
+    def __init__(self, workers: int | None, scheduler: str | None) -> None:
+        """`workers`: processes, None: one for each processor; none of them with a `scheduler`."""
+        self._distributed = sweep_package("distributed")
+        logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what counts is said by errors and rows
+        self._cluster: Any = None
+        self._client: Any = self._connected(scheduler) if scheduler else self._started(workers or os.cpu_count() or 1)
+
+    def _started(self, workers: int) -> Any:
+        """Raises CncError 26186."""
+        try:
+            self._cluster = self._distributed.LocalCluster(
+                n_workers=workers,
+                threads_per_worker=1,
+                processes=True,
+                memory_limit=0,
+                dashboard_address=None,
+                silence_logs=logging.CRITICAL,
+                preload="cnc_ptp.sweep.worker",
+            )
+        except (RuntimeError, OSError) as error:
+            raise CncError(UNFIT_WORKERS, f"the worker processes do not start: {error}", NOTHING) from None
+        return self._distributed.Client(self._cluster)
+
+    def _connected(self, scheduler: str) -> Any:
+        """Raises CncError 26181."""
+        try:
+            client = self._distributed.Client(scheduler, timeout=PATIENCE)
+        except (OSError, TimeoutError, ValueError, TypeError) as error:
+            reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+            raise CncError(NO_SCHEDULER, f"scheduler {scheduler} does not answer: {reason}", NOTHING) from None
+        try:
+            client.wait_for_workers(1, timeout=PATIENCE)
+        except TimeoutError:
+            client.close()
+            raise CncError(NO_SCHEDULER, f"scheduler {scheduler} has no worker", NOTHING) from None
+        return client
+
+    @property
+    def threads(self) -> int:
+        """Of all workers at this moment."""
+        return sum(self._client.nthreads().values()) or 1
+
+    def compute(self, job: Job, variants: Iterable[Variant], ended: Callable[[], bool]) -> Iterator[Row]:
+        """The rows as they are finished, until `ended` says that the sweep is to end. Raises CncError 26181, 26186."""
+        suspects: list[Variant] = []
+        for variant, future in self._finished(job, variants, IN_STOCK * self.threads, ended):
+            if future.status == "error" and self._killed(future):
+                suspects.append(variant)
+            else:
+                yield self._row(future)
+        for variant, future in self._finished(job, suspects, 1, ended):
+            if future.status == "error" and self._killed(future):
+                yield failed(job, variant, WORKER_LOST, "the worker process dies whenever it computes this variant")
+            else:
+                yield self._row(future)
+
+    def _finished(
+        self, job: Job, variants: Iterable[Variant], most: int, ended: Callable[[], bool]
+    ) -> Iterator[tuple[Variant, Any]]:
+        """Each with its future, at most so many of them on their way."""
+        waiting = deque(variants)
+        running: dict[Any, Variant] = {}
+        while (waiting or running) and not ended():
+            while waiting and len(running) < most:
+                variant = waiting.popleft()
+                running[self._client.submit(compute, job, variant, pure=False)] = variant
+            for future in self._done(running):
+                yield running.pop(future), future
+        for future in running:
+            future.cancel()
+
+    def _done(self, running: Iterable[Any]) -> list[Any]:
+        """Those that are finished, at most GLANCE later. Raises CncError 26181 when the scheduler is gone."""
+        try:
+            done = self._distributed.wait([*running], timeout=GLANCE, return_when="FIRST_COMPLETED").done
+        except (TimeoutError, self._distributed.TimeoutError):
+            done = set()
+        except CancelledError:
+            raise CncError(NO_SCHEDULER, "the scheduler is gone", KEPT) from None
+        return sorted(done, key=lambda future: str(future.key))
+
+    def _killed(self, future: Any) -> bool:
+        return isinstance(future.exception(), self._distributed.KilledWorker)
+
+    def _row(self, future: Any) -> Row:
+        """Raises CncError 26186 where a worker cannot compute at all: rows have what is wrong with a variant."""
+        if future.status == "error":
+            error = future.exception()
+            if isinstance(error, CncError):
+                raise CncError(UNFIT_WORKERS, error.reason, KEPT)
+            raise CncError(UNFIT_WORKERS, f"a worker cannot compute: {type(error).__name__}: {error}", KEPT)
+        row: Row = future.result()
+        return row
+
+    def close(self) -> None:
+        self._client.close()
+        if self._cluster is not None:
+            self._cluster.close()
+
+    def __enter__(self) -> Pool:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()

@@ -1,0 +1,331 @@
+"""Recordings in parts, compression, and what files say of themselves. rosbags is the reader of another hand."""
+
+import shutil
+import subprocess
+
+import numpy as np
+import pytest
+import yaml
+from click.testing import CliRunner
+from machine_support import PTP, ROOT
+from mcap.reader import make_reader
+from mcap_ros2.writer import Writer
+from recording_support import MACHINE, Blocks, record
+from rosbags.rosbag2 import Reader
+
+import cnc_ptp.recording
+from cnc_ptp.cli import main
+from cnc_ptp.commands.run.replay import replay_blocks
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.wiring import build_units, unit_kinds
+from cnc_ptp.parameters import machine_text
+from cnc_ptp.plc.scenario import parse_scenario
+from cnc_ptp.protocol.blocks import PlcBlock
+from cnc_ptp.recording.closing import close_cut_recording
+from cnc_ptp.recording.offline_run import OfflineRun
+from cnc_ptp.recording.origin import origin, revision
+from cnc_ptp.recording.reader import iter_messages, read_recording
+from cnc_ptp.recording.settings import Settings, Split, read_split
+from cnc_ptp.recording.verify import verify
+from cnc_ptp.recording.writer import Recording
+
+PTP_FILE = ROOT / "config" / "ptp.yaml"
+SCENARIO = "- {at: 0.0, to: x, do: move_absolute, target: 300, velocity: 100}\n"
+
+
+def run(path, settings, seconds=3.5):
+    """The same run each time."""
+    entries = parse_scenario(SCENARIO, "test.yaml", unit_kinds(PTP))
+    units = build_units(PTP, scenario=entries, end_when_idle=False)
+    text = machine_text(PTP_FILE)
+    with OfflineRun(PTP, units, record=str(path), machine_text=text, settings=settings) as offline:
+        for _ in offline.run(cycles=round(seconds * 1000)):
+            pass
+    return path
+
+
+def states_of(path):
+    return {
+        topic: rows[np.argsort(rows["cycle"], kind="stable")] for topic, rows in read_recording(path).states.items()
+    }
+
+
+def equal(one, other):
+    assert one.keys() == other.keys()
+    return all(
+        rows[name].tobytes() == other[topic][name].tobytes()  # bytes between fields are of no meaning
+        for topic, rows in one.items()
+        for name in rows.dtype.names
+    )
+
+
+def refusal(call, *arguments):
+    with pytest.raises(CncError) as refused:
+        call(*arguments)
+    return str(refused.value)
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    return run(tmp_path_factory.mktemp("whole") / "run.mcap", Settings())
+
+
+@pytest.fixture(scope="module")
+def parts(tmp_path_factory):
+    return run(tmp_path_factory.mktemp("parts") / "run", Settings(split=Split(seconds=1.0)))
+
+
+@pytest.fixture
+def copy(parts, tmp_path):
+    """Of the parts, to be damaged."""
+    return shutil.copytree(parts, tmp_path / "run")
+
+
+def test_parts_of_a_time_are_one_recording_for_us(whole, parts):
+    assert sorted(path.name for path in parts.iterdir()) == [
+        "metadata.yaml",
+        *(f"run_{number}.mcap" for number in range(4)),
+    ]
+    assert equal(states_of(whole), states_of(parts))
+    for path in (parts, parts / "metadata.yaml"):
+        result = verify(read_recording(path), replay_blocks)
+        assert result.equal and result.compared == 4 * 3500
+    topic = ["/x/block"]
+    assert [(m.log_time_ns, m.cdr) for m in iter_messages(parts, topic)] == [
+        (m.log_time_ns, m.cdr) for m in iter_messages(whole, topic)
+    ]
+    with cnc_ptp.recording.open(parts) as of_parts, cnc_ptp.recording.open(whole) as of_whole:
+        columns = of_parts.columns("/x/state", "cycle", "set_position", start=0.95, end=2.05)
+        expected = of_whole.columns("/x/state", "cycle", "set_position", start=0.95, end=2.05)
+        assert all((columns[name] == expected[name]).all() for name in columns)
+        assert of_parts.metadata["start_ns"] == of_whole.metadata["start_ns"]
+
+
+def test_parts_are_one_bag_for_others(whole, parts):
+    with Reader(parts) as bag, Reader(whole.parent) as expected:
+        assert bag.message_count == expected.message_count == sum(1 for _ in bag.messages())
+        assert (bag.start_time, bag.end_time) == (expected.start_time, expected.end_time)
+        found = {connection.topic: connection.msgcount for connection in bag.connections}
+        assert found == {connection.topic: connection.msgcount for connection in expected.connections}
+        assert all(connection.ext.offered_qos_profiles for connection in bag.connections)
+
+
+def test_each_part_is_a_recording_and_a_bag(parts):
+    for number in range(4):
+        part = parts / f"run_{number}.mcap"
+        recorded = read_recording(part)
+        assert recorded.complete and recorded.machine_yaml
+        first = int(recorded.states["/x/state"]["cycle"].min())
+        assert first == 1000 * number
+        with Reader(part) as bag:
+            assert bag.message_count == sum(1 for _ in bag.messages())
+
+
+def test_metadata_of_parts_is_that_of_rosbag2(parts):
+    metadata = yaml.safe_load((parts / "metadata.yaml").read_text())["rosbag2_bagfile_information"]
+    files = [f"run_{number}.mcap" for number in range(4)]
+    assert metadata["version"] == 9 and metadata["storage_identifier"] == "mcap"
+    assert metadata["relative_file_paths"] == files == [entry["path"] for entry in metadata["files"]]
+    assert metadata["message_count"] == sum(entry["message_count"] for entry in metadata["files"])
+    for entry in metadata["files"]:
+        with (parts / entry["path"]).open("rb") as stream:
+            statistics = make_reader(stream).get_summary().statistics
+        assert entry["message_count"] == statistics.message_count
+        assert entry["starting_time"]["nanoseconds_since_epoch"] == statistics.message_start_time
+        span = statistics.message_end_time - statistics.message_start_time
+        assert entry["duration"]["nanoseconds"] == span
+
+
+def test_parts_of_a_size(whole, tmp_path):
+    path = run(tmp_path / "run", Settings(split=Split(size=200e3)))
+    sizes = [part.stat().st_size for part in sorted(path.glob("*.mcap"))]
+    assert len(sizes) > 1 and all(size > 200e3 for size in sizes[:-1])
+    assert equal(states_of(whole), states_of(path))
+
+
+def test_parts_of_an_older_recording_are_replaced_and_nothing_else(tmp_path):
+    path = run(tmp_path / "run", Settings(split=Split(seconds=1.0)))
+    (path / "notes.txt").write_text("mine")
+    run(path, Settings(split=Split(seconds=1.0)), seconds=1.5)
+    assert sorted(file.name for file in path.iterdir()) == ["metadata.yaml", "notes.txt", "run_0.mcap", "run_1.mcap"]
+    assert read_recording(path).last_cycle == 1499
+
+
+def test_a_recording_whose_recorder_was_killed_is_whole_up_to_its_last_chunk(copy):
+    with Reader(copy) as bag:
+        before = bag.message_count
+    last = copy / "run_3.mcap"
+    last.write_bytes(last.read_bytes()[:-3000])
+    text = yaml.safe_load((copy / "metadata.yaml").read_text())  # it lists the parts that were closed
+    information = text["rosbag2_bagfile_information"]
+    information["files"].pop()
+    information["relative_file_paths"].pop()
+    (copy / "metadata.yaml").write_text(yaml.safe_dump(text))
+    recorded = read_recording(copy)
+    assert not recorded.complete and "without having been closed" in recorded.missing
+    assert recorded.last_cycle >= 2999
+    assert verify(recorded, replay_blocks).equal
+    missing = close_cut_recording(copy)
+    assert missing == recorded.missing
+    with Reader(copy) as bag:
+        assert 0 < bag.message_count == sum(1 for _ in bag.messages()) <= before
+    described = yaml.safe_load((copy / "metadata.yaml").read_text())["rosbag2_bagfile_information"]
+    assert len(described["files"]) == 4
+    (copy / "metadata.yaml").unlink()
+    assert read_recording(copy).last_cycle == recorded.last_cycle
+
+
+def test_folders_that_hold_no_recording_are_refused(tmp_path, copy):
+    for call in (read_recording, cnc_ptp.recording.open):
+        assert refusal(call, tmp_path) == (
+            f"P-ERR-26014 recording {tmp_path}: a folder without a metadata.yaml of rosbag2; nothing was read, give a file "
+            "of the folder"
+        )
+    (copy / "run_1.mcap").unlink()
+    assert refusal(read_recording, copy) == (
+        f"P-ERR-26001 recording {copy / 'run_1.mcap'}: cannot be opened: No such file or directory; nothing was read, "
+        "check the path"
+    )
+
+
+def test_a_folder_that_cannot_be_made_is_refused(tmp_path):
+    file = tmp_path / "file"
+    file.write_text("good")
+    for path, reason in ((file, "File exists"), (file / "run", "Not a directory")):
+        assert refusal(lambda path=path: Recording(path, MACHINE, settings=Settings(split=Split(seconds=1.0)))) == (
+            f"P-ERR-26020 recording {path}: no folder for its parts: {reason}; nothing is recorded"
+        )
+    assert file.read_text() == "good"
+
+
+@pytest.mark.parametrize(
+    ("text", "split"),
+    [("500MB", Split(size=5e8)), ("1.5 GiB", Split(size=1.5 * 2**30)), ("10min", Split(seconds=600.0)), ("2h", Split(seconds=7200.0))],
+)  # fmt: skip
+def test_splits_are_read(text, split):
+    assert read_split(text) == split
+
+
+@pytest.mark.parametrize("text", ["", "500", "MB", "5 apples", "-5s", "1e3s"])
+def test_splits_without_a_unit_are_refused(text):
+    assert refusal(read_split, text) == (
+        f"P-ERR-26019 --split '{text}': it is not a number with one of the units KB, MB, GB, KiB, MiB, GiB, s, min, h, as "
+        "500MB or 10min; nothing was started"
+    )
+
+
+def test_empty_parts_are_refused():
+    assert refusal(read_split, "0MB") == (
+        "P-ERR-26019 --split '0MB': a part must hold something, as 500MB or 10min; nothing was started"
+    )
+
+
+@pytest.mark.parametrize("compression", ["lz4", "none"])
+def test_other_compressions_hold_the_same(tmp_path, compression):
+    paths = [tmp_path / name for name in ("zstd.mcap", "other.mcap")]
+    for path, kind in zip(paths, ("zstd", compression), strict=True):
+        record(path, list(Blocks(7).machine(30)), settings=Settings(kind))
+    assert [(m.topic, m.log_time_ns, m.cdr) for m in iter_messages(paths[0])] == [
+        (m.topic, m.log_time_ns, m.cdr) for m in iter_messages(paths[1])
+    ]
+    with paths[1].open("rb") as stream:
+        reader = make_reader(stream, validate_crcs=True)
+        kinds = {chunk.compression for chunk in reader.get_summary().chunk_indexes}
+        assert kinds == {"" if compression == "none" else compression}
+        assert sum(1 for _ in reader.iter_messages()) == sum(1 for _ in iter_messages(paths[0]))
+
+
+@pytest.mark.skipif(not (ROOT / ".git").exists(), reason="not a checkout")
+def test_a_recording_says_what_it_was_made_by(whole):
+    metadata = read_recording(whole).metadata
+    assert metadata["format"] == "1"
+    assert {name: metadata[name] for name in origin()} == origin()
+    head = subprocess.run(["git", "-C", ROOT, "rev-parse", "HEAD"], capture_output=True, text=True).stdout.strip()
+    assert metadata["revision"].removesuffix("-dirty") == head
+
+
+def test_the_revision_of_an_installed_package_is_not_that_of_somebody_elses_checkout(tmp_path):
+    (tmp_path / "site-packages").mkdir()
+    assert revision(tmp_path / "site-packages") == ""
+    (tmp_path / ".git").write_text("not a checkout")
+    assert revision(tmp_path) == ""
+
+
+def test_scenario_and_plc_file_are_in_the_recording(tmp_path):
+    scenario, plc = tmp_path / "story.yaml", ROOT / "examples" / "plc_setpoint_generator.py"
+    scenario.write_text(SCENARIO)
+    for option, name, file in (("--scenario", "scenario.yaml", scenario), ("--plc", f"plc/{plc.name}", plc)):
+        path = tmp_path / f"{name}.mcap"
+        words = ["simulate", str(PTP_FILE), option, str(file), "--duration", "0.1", "--record", str(path)]
+        assert CliRunner().invoke(main, words).exit_code == 0
+        assert read_recording(path).attachments == {name: file.read_text()}
+
+
+def from_the_future(path, **metadata):
+    with Recording(path, MACHINE, notes=metadata) as recording:
+        recording.block("plc", PlcBlock(0, 10))
+    return path
+
+
+def test_a_recording_from_the_future_is_refused_by_every_command(tmp_path):
+    path = from_the_future(tmp_path / "new.mcap", format="2", version="9.1")
+    text = (
+        f"P-ERR-26016 recording {path}: has format 2 of cnc_ptp 9.1, this version reads up to format 1; nothing was read, "
+        "use a newer version of cnc_ptp"
+    )
+    assert refusal(read_recording, path) == text == refusal(cnc_ptp.recording.open, path)
+    commands = (
+        ["replay"],
+        ["report", "-o", "page.html"],
+        ["plot", "x/set_velocity", "-o", "a.svg"],
+        ["export", "--topic", "x/state", "-o", "a.csv"],
+    )
+    for name, *words in commands:
+        result = CliRunner().invoke(main, [name, str(path), *words])
+        assert (result.exit_code, " ".join(result.stderr.split())) == (2, text), name
+    other = from_the_future(tmp_path / "other.mcap", format="b")
+    assert refusal(read_recording, other).startswith(
+        f"P-ERR-26016 recording {other}: has format b, this version reads up"
+    )
+
+
+def test_recordings_without_a_format_are_the_oldest(tmp_path):
+    path = from_the_future(tmp_path / "old.mcap", format="0")
+    assert read_recording(path).complete
+
+
+def foreign(path):
+    with path.open("wb") as stream:
+        writer = Writer(stream)
+        schema = writer.register_msgdef("geometry_msgs/msg/Point", "float64 x\nfloat64 y\nfloat64 z")
+        for number in range(20):
+            time = number * 100_000_000
+            writer.write_message("/point", schema, {"x": number / 2, "y": 1.0, "z": 0.0}, time, time, number)
+        writer.finish()
+    return path
+
+
+def test_mcap_files_of_other_programs(tmp_path):
+    path = foreign(tmp_path / "foreign.mcap")
+    answers = {
+        ("report", "-o", "page.html"): f"P-ERR-26017 recording {path}: is not of cnc_ptp; nothing was drawn; "
+        "`cnc_ptp export` reads its topics",
+        (
+            "replay",
+        ): f"P-ERR-26004 recording {path}: holds no attachment machine.yaml; it cannot be verified, record it "
+        "with cnc_ptp",
+        (
+            "plot",
+            "x/set_velocity",
+            "-o",
+            "a.svg",
+        ): f"P-ERR-26011 recording {path}: holds no unit 'x' with states; there are none; nothing was drawn",
+    }
+    for (name, *words), text in answers.items():
+        result = CliRunner().invoke(main, [name, str(path), *words])
+        assert (result.exit_code, " ".join(result.stderr.split())) == (2, text), name
+    with cnc_ptp.recording.open(path) as opened:
+        assert opened.columns("/point")["x"].tolist() == [number / 2 for number in range(20)]
+    table = tmp_path / "point.csv"
+    result = CliRunner().invoke(main, ["export", str(path), "--topic", "/point", "-o", str(table)])
+    assert result.exit_code == 0 and table.read_text().splitlines()[:2] == ["time,x,y,z", "0.0,0.0,1.0,0.0"]

@@ -1,0 +1,160 @@
+"""A recorded run computed again with something changed; without a change it is what was recorded, to the bit."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from machine_support import ROOT
+from state_support import Run
+
+from cnc_ptp.commands.run.replay import end_of
+from cnc_ptp.commands.run.what_if import compute, what_if
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.wiring import build_units
+from cnc_ptp.parameters import machine_text
+from cnc_ptp.recording.mcap_file import McapFile
+from cnc_ptp.recording.offline_run import OfflineRun
+from cnc_ptp.recording.reader import Recorded, read_recording
+from cnc_ptp.recording.run_difference import difference
+from cnc_ptp.recording.run_inputs import RunInputs
+from cnc_ptp.recording.what_if import Change, WhatIf
+
+SPINDLES = "examples/spindles/"
+OLD_KV = 5000
+"""Of x in config/mill.yaml, as its parameter list has it."""
+RUNS = [
+    Run("config/mill.yaml", "examples/bracket.nc", "examples/bracket_overrides.yaml"),
+    Run("examples/probe.yaml", "examples/probe.nc"),
+    Run(SPINDLES + "gears_programmed.yaml", SPINDLES + "gears_programmed.nc"),
+    Run(SPINDLES + "synchronous.yaml", SPINDLES + "override.nc", SPINDLES + "override.yaml"),
+    Run("config/ptp.yaml", scenario="examples/figures/slave_flying_saw.yaml"),
+    Run("config/lathe.yaml", "examples/threads/chain.nc"),
+    Run("config/mill.yaml", "examples/tapping.nc"),
+    Run("config/gantry.yaml", scenario="examples/figures/slave_gantry.yaml"),
+    Run(SPINDLES + "two_channels.yaml", SPINDLES + "channel1.nc", SPINDLES + "two_channels_start.yaml"),
+]
+
+
+def record(run: Run, path: Path, *, every: float = 1.0) -> Recorded:
+    """The run with its checkpoints."""
+    machine = run.parameters()
+    units = build_units(machine, scenario=run.entries(machine))
+    text = machine_text(ROOT / run.machine)
+    with OfflineRun(machine, units, record=str(path), machine_text=text, checkpoint_seconds=every) as offline:
+        cycles = round(run.seconds * 1e6 / machine.cycle_time_us) if run.seconds else None
+        for _ in offline.run(cycles=cycles):
+            pass
+    return read_recording(path)
+
+
+def changed(recorded: Recorded, path: Path, change: Change) -> tuple[Recorded, str]:
+    with RunInputs(recorded.path) as inputs:
+        run = WhatIf(inputs, change)
+        compute(run, inputs, str(path))
+    return read_recording(path), run.note
+
+
+@pytest.mark.parametrize("run", RUNS, ids=lambda run: run.name)
+def test_a_run_without_a_change_is_the_recorded_one_from_anywhere(run: Run, tmp_path: Path) -> None:
+    recorded = record(run, tmp_path / "run.mcap")
+    duration = end_of(recorded) * recorded.cycle_time_ns * 1e-9
+    for share in (0.0, 0.37, 0.8):
+        again, note = changed(recorded, tmp_path / f"again{share}.mcap", Change(share * duration))
+        found = difference(recorded.path, again.path)
+        assert found.parts_at is None, (share, note, [row for row in found.rows if row.parts_at is not None][:3])
+        assert not share or duration * share < 1.0 or note.startswith("computed from the checkpoint at ")
+        events = [event for event in recorded.events if event.cycle >= round(share * duration * 1000) + 20]
+        texts = {(event.cycle, event.text) for event in again.events}
+        assert all((event.cycle, event.text) in texts for event in events if event.source != "plc")
+
+
+@pytest.fixture(scope="module")
+def mill(tmp_path_factory: pytest.TempPathFactory) -> Recorded:
+    """Straight to and fro at constant feed, long enough to be steady."""
+    folder = tmp_path_factory.mktemp("mill")
+    (folder / "lines.nc").write_text("G01 X100 F2400\nX0\nX100\nX0\nM30\n")
+    run = Run("config/mill.yaml", str(folder / "lines.nc"))
+    return record(run, folder / "run.mcap")
+
+
+def steady(recorded: Recorded, begin: float) -> tuple[float, float]:
+    """Largest velocity of x and following error in the run from `begin` (s) on, where it is steady."""
+    rows = recorded.states["/x/state"]
+    rows = rows[rows["cycle"] >= begin * 1000]
+    return float(np.max(np.abs(rows["set_velocity"]))), float(np.max(np.abs(rows["following_error"])))
+
+
+def test_a_changed_kv_acts_from_its_time_on(mill: Recorded, tmp_path: Path) -> None:
+    """In steady motion of a drive without feedforward the following error is v / Kv."""
+    _, before = steady(mill, 4.0)
+    again, _ = changed(mill, tmp_path / "kv.mcap", Change(3.0, parameters=["x.getriebe.0.kv=8000"]))
+    velocity, after = steady(again, 5.5)
+    assert velocity == pytest.approx(40.0)
+    assert before / after == pytest.approx(8000 / OLD_KV, rel=2e-3)
+    assert difference(mill.path, again.path).parts_at == pytest.approx(3.0, abs=0.02)
+
+
+def test_an_override_of_half_makes_the_rest_of_the_program_twice_as_long(mill: Recorded, tmp_path: Path) -> None:
+    again, note = changed(mill, tmp_path / "slow.mcap", Change(3.0, override=50.0))
+    velocity, _ = steady(again, 4.0)
+    assert velocity == pytest.approx(20.0) and note == "computed from the checkpoint at 3 s"
+
+
+def test_the_spindle_gets_what_the_changed_program_says(mill: Recorded, tmp_path: Path) -> None:
+    program = {"program": "other.nc", "text": "M3 S600\nG01 X10 F2400\nM5\nM30"}
+    again, _ = changed(mill, tmp_path / "other.mcap", Change(program=program))
+    assert float(np.max(again.states["/s/state"]["set_speed_rpm"])) == pytest.approx(600.0)
+
+
+def refusal(mill: Recorded, change: Change) -> str:
+    with RunInputs(mill.path) as inputs, pytest.raises(CncError) as refused:
+        WhatIf(inputs, change)
+    return str(refused.value)
+
+
+def test_refusals(mill: Recorded, tmp_path: Path) -> None:
+    end = end_of(mill) / 1000
+    assert refusal(mill, Change(1e3)) == (
+        f"P-ERR-26154 --from 1000 is not within the recorded time 0 ... {end:g} s; nothing was computed"
+    )
+    assert refusal(mill, Change(2.0, 1.0)) == ("P-ERR-26154 --to 1 is before --from 2; nothing was computed")
+    assert refusal(mill, Change(parameters=["x.kv"])) == (
+        "P-ERR-26153 --set 'x.kv' is not of the form unit.parameter=value, as x.getriebe.0.kv=8000; "
+        "nothing was computed"
+    )
+    assert refusal(mill, Change(parameters=["u.kv=1"])) == (
+        "P-ERR-26153 --set 'u.kv=1' names the unit 'u', which the machine does not have. "
+        "Known: machine, channel, x, y, z, s; nothing was computed"
+    )
+    assert "has no parameter 'getriebe.0.kw'" in refusal(mill, Change(parameters=["x.getriebe.0.kw=1"]))
+    assert refusal(mill, Change(2.0, program={})) == (
+        "P-ERR-26157 --program takes the place of a program that is loaded after --from, and the last one is loaded "
+        "at 0 s; nothing was computed"
+    )
+
+
+def test_a_recording_without_a_machine_file_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "foreign.mcap"
+    McapFile(path).close()
+    assert refusal(Recorded(path), Change()) == (
+        f"P-ERR-26155 recording {path}: holds no attachment machine.yaml; nothing was computed, record it with cnc_ptp"
+    )
+
+
+def test_recordings_of_different_machines_are_not_compared(mill: Recorded, tmp_path: Path) -> None:
+    other = record(Run("config/ptp.yaml", scenario="examples/trajectory.yaml", seconds=0.5), tmp_path / "ptp.mcap")
+    with pytest.raises(CncError) as refused:
+        difference(mill.path, other.path)
+    assert str(refused.value).startswith("P-ERR-26158 the recordings are of different machines: ")
+    assert str(refused.value).endswith("; nothing was compared")
+
+
+def test_the_command_prints_where_the_runs_part(mill: Recorded, capsys: pytest.CaptureFixture[str]) -> None:
+    status = what_if(
+        str(mill.path), begin=3.0, end=None, parameters=(), override=50.0, program=None, commands=None, output=None,
+        diff=False,
+    )  # fmt: skip
+    printed = capsys.readouterr().out
+    assert status == 0 and "computed from the checkpoint at 3 s" in printed and "the runs part at 3.0" in printed
