@@ -255,7 +255,7 @@ def test_scenario_and_plc_file_are_in_the_recording(tmp_path):
     scenario, plc = tmp_path / "story.yaml", ROOT / "examples" / "plc_setpoint_generator.py"
     scenario.write_text(SCENARIO)
     for option, name, file in (("--scenario", "scenario.yaml", scenario), ("--plc", f"plc/{plc.name}", plc)):
-        path = tmp_path / f"{name}.mcap"
+        path = tmp_path / f"{file.stem}.mcap"
         words = ["simulate", str(PTP_FILE), option, str(file), "--duration", "0.1", "--record", str(path)]
         assert CliRunner().invoke(main, words).exit_code == 0
         assert read_recording(path).attachments == {name: file.read_text()}
