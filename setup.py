@@ -20,7 +20,7 @@ COMMANDS = (
     "simulate", "run", "status", "jog", "check", "explain", "format", "replay", "report", "plot", "layout", "recover",
     "params", "identify", "circle", "curve", "lists", "sweep",
 )  # fmt: skip
-"""Executables of their own. Not `do` and `export`, words of the shell, nor `watch` and `init`, which Linux has."""
+"""Executables of their own. Not `do` and `export`, words of the shell, nor `watch`, `init`, `diff`, which Linux has."""
 NODES = ("nc_channel", "axis", "spindle", "plc_bridge", "clock", "recorder", "player")
 
 

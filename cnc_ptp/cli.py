@@ -380,7 +380,7 @@ def check_command(**options: Any) -> None:
 @click.option("--diff-page", "page", type=click.Path(dir_okay=False), help="What if: a page of both runs (.html).")
 @namespace_option
 def replay_command(**options: Any) -> None:
-    """Compute a recorded run again, also with something changed, or publish the recording."""
+    """Compute a recorded run again, also changed, or publish it."""
     from cnc_ptp.commands.run.replay import replay
 
     names = ("begin", "end", "parameters", "override", "program", "commands", "output", "diff", "page")
@@ -425,7 +425,7 @@ def part_options(function: Callable[..., Any]) -> Callable[..., Any]:
 @click.argument("second", type=click.Path(dir_okay=False))
 @click.option("--output", "-o", type=click.Path(dir_okay=False), help="Page of both runs on top of each other (.html).")
 def diff_command(**options: Any) -> None:
-    """Compare two recorded runs of a machine: where they part, largest values, program times."""
+    """Compare two recorded runs of a machine, also as a page."""
     from cnc_ptp.commands.look.diff import diff
 
     sys.exit(diff(**options))

@@ -113,7 +113,7 @@ def test_a_program_that_no_variant_can_run(tmp_path):
 @pytest.mark.parametrize(
     ("options", "text"),
     [
-        ({"vary": "x.kv=1"}, "P-ERR-26178 --vary: axis /x has no parameter 'kv'; nothing was started\n"),
+        ({"vary": "x.kv=1"}, "P-ERR-26178 --vary: axis x has no parameter 'kv'; nothing was started\n"),
         ({"goal": "maxi(1)"}, "P-ERR-26179 --goal: 'maxi(1)' has the function maxi, which does not exist, only max, min, mean, rms, std, last, abs; did you mean max?; nothing was started\n"),
     ],
 )  # fmt: skip
