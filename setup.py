@@ -17,8 +17,8 @@ from setuptools.command.build_ext import build_ext
 PACKAGE = "cnc_ptp"
 ROOT = Path(__file__).parent.resolve()
 COMMANDS = (
-    "simulate", "run", "status", "jog", "check", "explain", "format", "replay", "report", "plot", "params", "identify",
-    "circle", "curve", "lists", "sweep",
+    "simulate", "run", "status", "jog", "check", "explain", "format", "replay", "report", "plot", "layout", "recover",
+    "params", "identify", "circle", "curve", "lists", "sweep",
 )  # fmt: skip
 """Executables of their own. Not `do` and `export`, words of the shell, nor `watch`, `init`, `diff`, which Linux has."""
 NODES = ("nc_channel", "axis", "spindle", "plc_bridge", "clock", "recorder", "player")
@@ -200,6 +200,7 @@ setup(
     python_requires=">=3.11,<3.14",
     extras_require={
         "data": ["pandas>=2.2,<4", "pyarrow>=18"],  # tables and Parquet of recordings
+        "foxglove": ["foxglove-sdk>=0.30,<0.31"],  # live stream
         "sweep": ["dask[distributed]>=2025.2", "optuna>=4.2,<6", "pyarrow>=18"],
     },
     entry_points={"console_scripts": console_scripts()},

@@ -2,22 +2,34 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 import tempfile
+import time
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
+import numpy as np
 from mcap.records import Channel
 
 import cnc_ptp.recording
 from bench import recording as short
 from bench.figures import Effort, Figure, ShowProgress, median_of
-from cnc_ptp.recording.mcap_file import McapFile
+from cnc_ptp.recording.mcap_chunks import MessageRun
+from cnc_ptp.recording.mcap_file import HEAD_SIZE, McapFile
 from cnc_ptp.recording.mcap_index import McapIndex
+from cnc_ptp.recording.reader import STATE_TYPES
 from cnc_ptp.recording.writer import Recording
+from cnc_ptp.wire.layout import Bytes, fixed_layout
+from cnc_ptp.wire.schemas import parse_schema
 
 HOUR = 3600
 AXES = tuple("xyzabcuv")
 SECOND_NS = 1_000_000_000
+CYCLES = 1000
+"""Of a second."""
+GIB_MB = 2**30 / 1e6
 Write = Callable[[McapFile], None]
 NOTHING: Mapping[int, Write] = {}
 
@@ -39,7 +51,21 @@ def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
             middle = seconds / 2
             one = short.seconds(lambda: recording.frame("/x/state", start=middle, end=middle + 1.0))
             yield Figure("table of a second in the middle", 1e3 * median_of(effort.runs, one), "ms")
+        show("report")
+        yield from report_figures(path, length)
         yield Figure("size of the file for each axis", path.stat().st_size / seconds / len(AXES) / 1e3, "kB/s")
+
+
+def report_figures(path: Path, length: str) -> Iterator[Figure]:
+    """Time and memory of `cnc_ptp report`, in a process of its own; once, as it takes long."""
+    command = [sys.executable, "-m", "cnc_ptp", "report", str(path), "-o", str(path.with_suffix(".html"))]
+    begin = time.perf_counter()
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+    _, status, usage = os.wait4(process.pid, 0)
+    seconds = time.perf_counter() - begin
+    assert status == 0
+    yield Figure(f"report of {length}", seconds, "s", goal=60.0, at_most=True)
+    yield Figure(f"memory of a report of {length}", usage.ru_maxrss * 1024e-6, "MB", goal=GIB_MB, at_most=True)
 
 
 def read_column(path: Path) -> None:
@@ -50,7 +76,7 @@ def read_column(path: Path) -> None:
 def one_second(path: Path) -> Path:
     """All axes move, every number of a moving axis different."""
     with Recording(path, short.MACHINE) as recording:
-        for first in range(0, 1000, short.COUNT):
+        for first in range(0, CYCLES, short.COUNT):
             for name, block in short.unit_blocks(first, AXES):
                 recording.block(name, block)
     return path
@@ -69,9 +95,19 @@ def repeat_second(second: Path, path: Path, seconds: int, before: Mapping[int, W
                 before[index](file)
             for runs in groups:
                 for run, times in runs:
-                    file.messages(run.channel_id, run.rows.copy(), times + index * SECOND_NS)
+                    file.messages(run.channel_id, later(source, run, index), times + index * SECOND_NS)
                 file.close_chunk()
     source.close()
+
+
+def later(source: McapIndex, run: MessageRun, seconds: int) -> Bytes:
+    """The messages, the cycles of states that much later."""
+    rows = run.rows.copy()
+    schema = source.schemas[source.channels[run.channel_id].schema_id]
+    if schema.name in STATE_TYPES:
+        layout = fixed_layout(parse_schema(schema.name, schema.data.decode()))
+        rows[:, HEAD_SIZE:].view(layout.dtype)["cycle"] += np.uint64(CYCLES * seconds)
+    return rows
 
 
 def announce(file: McapFile, source: McapIndex, channel: Channel) -> None:

@@ -130,6 +130,14 @@ def simulate_command(**options: Any) -> None:
 
 @main.command("run")
 @run_options
+@click.option(
+    "--foxglove",
+    type=click.IntRange(1, 65535),
+    is_flag=False,
+    flag_value=8765,
+    metavar="[PORT]",
+    help="Stream the messages of a recording to Foxglove at ws://localhost:PORT; without PORT 8765.",
+)
 @click.option("--free-run", is_flag=True, help="As fast as all nodes follow, instead of in real time.")
 @click.option("--composed", is_flag=True, help="All nodes in one process.")
 @namespace_option
@@ -180,7 +188,7 @@ def take_recorder(options: dict[str, Any]) -> RecorderOptions | None:
     for given, needed, text in needs:
         if given is not None and needed is None:
             raise click.UsageError(text)
-    if record is None and not on_demand:
+    if record is None and not on_demand and options.get("foxglove") is None:
         return None
     scenario, plc = options["scenario"], options["plc"]
     return RecorderOptions(when, split, compression, keep or 0.0, folder, snapshot_when, scenario, plc)
@@ -426,15 +434,38 @@ def diff_command(**options: Any) -> None:
 @main.command("report")
 @RECORDING
 @part_options
+@click.option("--compare", type=click.Path(dir_okay=False), help="Another recording, drawn on top of this one.")
+@click.option(
+    "--align",
+    type=click.Choice(("program", "start")),
+    default="program",
+    show_default=True,
+    help="With --compare: starts of the programs, or of the recordings, at the same time.",
+)
 @click.option("-o", "--output", required=True, type=click.Path(dir_okay=False), help="HTML file to write.")
 def report_command(**options: Any) -> None:
     """Make one self-contained HTML page of a recording.
 
-    It shows plots, events, errors and statistics.
+    It shows plots, events, errors and statistics; with --compare two recordings and what differs.
     """
     from cnc_ptp.commands.look.report import report
 
     sys.exit(report(**options))
+
+
+@main.command("layout")
+@MACHINE
+@click.option("--for", "program", type=click.Choice(("foxglove", "plotjuggler")), required=True, help="Program.")
+@click.option("-o", "--output", required=True, type=click.Path(dir_okay=False), help="File: .json, or .xml.")
+def layout_command(**options: Any) -> None:
+    """Write a layout of Foxglove or PlotJuggler for a machine.
+
+    It has a tab for each channel, axis and spindle, for threads and for circles, with the topics of recordings and of
+    the running machine.
+    """
+    from cnc_ptp.commands.look.layout import layout
+
+    sys.exit(layout(**options))
 
 
 @main.command("export")

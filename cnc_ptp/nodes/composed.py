@@ -51,8 +51,14 @@ def _run(
         monitor.watch_units()
     recorder = None
     if options.recording:  # before the units: it takes each block first
-        machine_yaml = machine_text(options.machine)
-        recorder = RecorderNode(machine, options.record, machine_yaml, options=options.recording, handover=handover)
+        recorder = RecorderNode(
+            machine,
+            options.record,
+            machine_text(options.machine),
+            options=options.recording,
+            foxglove=options.foxglove,
+            handover=handover,
+        )
     clock = ClockNode(
         machine,
         wait_for=observers_of(options),

@@ -1,4 +1,7 @@
-"""`recorder MACHINE.yaml OUT.mcap`: records every block, event and command of the graph, and what the PLC writes."""
+"""`recorder MACHINE.yaml OUT.mcap`: records every block, event and command of the graph, and what the PLC writes.
+
+With `--foxglove PORT` it streams them, too.
+"""
 
 from __future__ import annotations
 
@@ -22,6 +25,7 @@ from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import convert, node_command_line, process
 from cnc_ptp.nodes.events import ROSOUT, EventPublisher
 from cnc_ptp.nodes.handover import Handover
+from cnc_ptp.nodes.live_stream import LiveServer, live_stream
 from cnc_ptp.nodes.observed_topics import observed_topics, type_name
 from cnc_ptp.nodes.polling_node import PollingNode, chain
 from cnc_ptp.nodes.recording_services import RecordingServices
@@ -48,9 +52,12 @@ from cnc_ptp.recording.on_demand import OnDemand, without_what
 from cnc_ptp.recording.recorder_options import FROM_THE_START, RecorderOptions
 from cnc_ptp.recording.settings import COMPRESSIONS
 from cnc_ptp.recording.trigger import Condition, make_recording
+from cnc_ptp.recording.writer import Recording
 from cnc_ptp.wire.block_codec import head_of, with_plain_header
 from cnc_ptp.wire.stamps import Stamps
 from cnc_ptp.wire.ticks import Tick, decode_tick
+
+Sink = Recording | OnDemand
 
 BLOCKS_MISSING = 26114
 ENDED_EARLY = 26015
@@ -78,9 +85,13 @@ class RecorderNode(PollingNode):
         machine_yaml: str,
         *,
         options: RecorderOptions = FROM_THE_START,
+        foxglove: int | None = None,
         handover: Handover | None = None,
     ) -> None:
-        """`path`: of the recording of the whole run, None = on demand alone. `handover`: from nodes of this process."""
+        """`path`: of the recording of the whole run, None = on demand alone. `foxglove`: port of a live stream.
+
+        `handover`: from nodes of this process.
+        """
         super().__init__(RECORDER, enable_rosout=False)
         self._units = unit_kinds(machine)
         self._options = options
@@ -88,6 +99,8 @@ class RecorderNode(PollingNode):
         self._condition = None if options.when is None else Condition(options.when, self._units)
         self._settings = options.settings()
         self._snapshots = options.snapshots_of(self._units)
+        self._server = None if foxglove is None else LiveServer(foxglove, "cnc_ptp")
+        self._live: Recording | None = None
         self._machine_yaml = machine_yaml
         self._path = path
         self._cycle_ns = machine.cycle_time_us * 1000
@@ -96,7 +109,7 @@ class RecorderNode(PollingNode):
         self._last_tick = -1
         """First cycle of the newest tick."""
         self._recording: OnDemand | None = None
-        self._early: list[Any] = []
+        self._early: list[Callable[[], None]] = []
         self._next_cycle = dict.fromkeys(self._units, 0)
         self._heard = time.monotonic()
         self._report_publisher = self.create_publisher(msg.BlockReport, REPORT, BLOCKS)
@@ -160,8 +173,8 @@ class RecorderNode(PollingNode):
         self._event_publisher.publish(convert.event_to_message(event, stamp))
 
     def destroy_node(self) -> None:
-        if self._recording is not None:
-            self._guarded(self._recording.close)()
+        for sink in self._sinks:
+            self._guarded(sink.close)()
         super().destroy_node()
 
     @property
@@ -186,13 +199,17 @@ class RecorderNode(PollingNode):
             self._free_run = not message.scheduled_monotonic_ns
             if not self._free_run:
                 process.take_priority()
+            if self._server is not None:
+                self._live = live_stream(self._server, start_ns, self._cycle_ns)
             self._recording = self._begin(start_ns, message.first_cycle)
             for record in self._early:
                 record()
             self._early.clear()
         self._last_tick = message.first_cycle
         if message.count:
-            self._recording.tick(CycleTick(message.first_cycle, message.count), message.scheduled_monotonic_ns)
+            tick = CycleTick(message.first_cycle, message.count)
+            for sink in self._sinks:
+                sink.tick(tick, message.scheduled_monotonic_ns)
 
     def _begin(self, start_ns: int, first_cycle: int) -> OnDemand:
         """With the first tick."""
@@ -222,13 +239,14 @@ class RecorderNode(PollingNode):
         data = with_plain_header(block_class, data, self._recording.stamps)
         stamp_ns, first_cycle, count = head_of(data)
         if self._is_new(unit, stamp_ns, first_cycle, count):
-            self._recording.encoded_block(unit, block_class, data)
+            for sink in self._sinks:
+                sink.encoded_block(unit, block_class, data)
 
     def _take_block(self, unit: str, block: CycleBlock) -> None:
         """Of a node of this process; now, because the commands in it get more arguments on their way."""
         self._heard = time.monotonic()
-        if self._recording is not None:  # None: it could not be opened, and the node fails
-            self._recording.block(unit, block, handshakes=False)
+        for sink in self._sinks:  # none: the file could not be opened, and the node fails
+            sink.block(unit, block, handshakes=False)
 
     def _is_new(self, unit: str, stamp_ns: int, cycle: int, count: int) -> bool:
         """False for a block that is recorded already; an event when earlier blocks are missing."""
@@ -241,49 +259,57 @@ class RecorderNode(PollingNode):
         return bool(cycle >= expected)
 
     def _on_event(self, message: msg.Event) -> None:
-        self._single(lambda: self._recorded.event(convert.message_to_event(message)))
+        event = convert.message_to_event(message)
+        self._single(lambda sink: sink.event(event))
 
     def _on_command(self, message: msg.CommandRecord) -> None:
-        self._single(lambda: self._recorded.command(convert.message_to_record(message)))
+        command = convert.message_to_record(message)
+        self._single(lambda sink: sink.command(command))
 
     def _on_stamped(self, topic: str, message_type: Any, data: bytes) -> None:
         """A message with a header that is recorded as it came."""
         stamp_ns = convert.nanoseconds(deserialize_message(data, message_type).header.stamp)
-        self._single(lambda: self._recorded.raw(recorded_topic(topic), type_name(message_type), data, stamp_ns))
+        self._single(lambda sink: sink.raw(recorded_topic(topic), type_name(message_type), data, stamp_ns))
 
     def _on_observed(self, topic: str, type_name: str, data: bytes) -> None:
         """A PLC may continue to publish when the run has ended, so this does not count as a message of the run."""
         stamp_ns = self._tick_ns if self._free_run else time.time_ns()
-        self._keep(lambda: self._recorded.raw(topic, type_name, data, stamp_ns))
+        self._keep(lambda sink: sink.raw(topic, type_name, data, stamp_ns))
 
     def _on_log(self, data: bytes) -> None:
         """The topic is one for all namespaces; messages of nodes of other namespaces are left out."""
         if _namespace(deserialize_message(data, Log).name) == _namespace(self.get_logger().name):
             self._on_observed(ROSOUT, type_name(Log), data)
 
-    def _single(self, record: Any) -> None:
+    def _single(self, record: Callable[[Sink], None]) -> None:
         self._heard = time.monotonic()
         self._keep(record)
 
-    def _keep(self, record: Any) -> None:
+    def _keep(self, record: Callable[[Sink], None]) -> None:
         """Records it, or keeps it until the first tick has come."""
         if self._recording is None:
-            self._early.append(record)
-        else:
-            record()
+            self._early.append(lambda: self._keep(record))
+            return
+        for sink in self._sinks:
+            record(sink)
 
     @property
     def _recorded(self) -> OnDemand:
         assert self._recording is not None
         return self._recording
 
+    @property
+    def _sinks(self) -> list[Sink]:
+        """The live stream and the recording, since the first tick."""
+        return [sink for sink in (self._live, self._recording) if sink is not None]
+
     def _look(self) -> None:
         """Takes the ticks and blocks that have come, and writes when it is time."""
         self.take_polled()
         if self._free_run and self._handover is None:
             self._report(self._last_tick)
-        if self._recording is not None:
-            self._recording.flush_if_due(time.monotonic())
+        for sink in self._sinks:
+            sink.flush_if_due(time.monotonic())
 
 
 def _namespace(logger: str) -> str:
@@ -301,12 +327,14 @@ def _namespace(logger: str) -> str:
 @click.option("--snapshot-when", help="A snapshot also when this becomes true: 'x.following_error > 0.1'.")
 @click.option("--scenario", type=click.Path(), help="Kept in the recording.")
 @click.option("--plc", type=click.Path(), help="Kept in the recording.")
-def command(machine: str, output: str | None, **options: Any) -> None:
+@click.option("--foxglove", type=int, help="Port of a live stream for Foxglove.")
+def command(machine: str, output: str | None, foxglove: int | None, **options: Any) -> None:
     """Records the graph of MACHINE to the MCAP file OUTPUT, without it on demand."""
 
     def make() -> RecorderNode:
         given = RecorderOptions(**options)
-        return RecorderNode(read_machine(machine), output, machine_text(machine), options=given)
+        text = machine_text(machine)
+        return RecorderNode(read_machine(machine), output, text, options=given, foxglove=foxglove)
 
     sys.exit(process.run_node(make, name=RECORDER, settled=lambda node: node.settled))
 

@@ -31,6 +31,7 @@ from cnc_ptp.nodes.forked import (
     start_server,
     wait_for,
 )
+from cnc_ptp.nodes.live_stream import require_foxglove
 from cnc_ptp.nodes.monitor import SUPERVISOR, RunMonitor
 from cnc_ptp.nodes.topics import MONITOR, RECORDER
 from cnc_ptp.nodes.unit.claim import require_free
@@ -79,11 +80,14 @@ class RunOptions:
     """A PLC in a file."""
     recorder: RecorderOptions | None = None
     """Of the recorder; without `record` it records on demand alone."""
+    foxglove: int | None = None
+    """Port of a live stream for Foxglove."""
 
     @property
     def recording(self) -> RecorderOptions | None:
-        """None: without a recorder."""
-        return self.recorder or (FROM_THE_START if self.record else None)
+        """None: without a recorder, which also makes the live stream."""
+        needed = self.record is not None or self.foxglove is not None
+        return self.recorder or (FROM_THE_START if needed else None)
 
 
 class Supervisor:
@@ -301,7 +305,8 @@ def command_lines(
     begin = [*start_words(options.begin)]
     if options.recording:
         file = [options.record] if options.record else []
-        yield RECORDER, ["recorder", options.machine, *file, *options.recording.words()]
+        live = ["--foxglove", str(options.foxglove)] if options.foxglove is not None else []
+        yield RECORDER, ["recorder", options.machine, *file, *options.recording.words(), *live]
     for name, kind in unit_kinds(machine).items():
         if kind != "plc":
             first = program if options.begin is None and name == next(iter(machine.channels), None) else []
@@ -322,13 +327,15 @@ def command_lines(
 def only_run(options: RunOptions) -> Iterator[None]:
     """ROS with its domain for this run alone; only then is the recording opened.
 
-    Raises CncError 26107, 26108 (process) and 26113 (recorder).
+    Raises CncError 26107, 26108 (process), 26113 (recorder), 26023 and 26024 (live stream).
     """
     process.initialise()
     try:
         with process.claim_domain():
             if options.recording is not None:
                 options.recording.require_places(options.record)
+            if options.foxglove is not None:
+                require_foxglove(options.foxglove)
             yield
     finally:
         rclpy.try_shutdown()

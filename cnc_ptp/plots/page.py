@@ -64,14 +64,58 @@ tr.warning .tag { background: #fbe6ae; color: var(--amber); }
 pre { background: var(--page); border-radius: 8px; padding: 12px; overflow: auto; font-size: 12.5px;
       max-height: 420px; }
 summary { cursor: pointer; font-weight: 600; }
-.cursor-layer { position: absolute; inset: 0; pointer-events: none; font-size: 12px; }
+.cursor-layer { position: absolute; inset: 0; pointer-events: none; font-size: 12px; overflow: hidden; }
 .cursor-layer > div { position: absolute; font-variant-numeric: tabular-nums; white-space: pre; }
 .cursor-line { width: 0; border-left: 1px solid var(--ink); opacity: 0.7; }
-.cursor-line.reference { border-left: 1px dashed var(--red); }
+.cursor-line.mark { border-left: 1px dashed var(--red); opacity: 1; }
+.cursor-name { color: white; background: var(--red); border-radius: 4px; padding: 0 5px; }
 .cursor-time { background: var(--ink); color: white; border-radius: 4px; padding: 0 6px; }
 .cursor-values { background: rgb(255 255 255 / 85%); border-radius: 4px; padding: 0 6px; text-align: right; }
 .cursor-values span { display: block; line-height: 1.3; }
-@media print { section, .card { break-inside: avoid; } }
+.cursor-place { width: 13px; height: 13px; margin: -7px 0 0 -7px; border: 2px solid white; border-radius: 50%;
+                background: var(--ink); box-shadow: 0 0 0 1px var(--ink); }
+.legend { display: flex; flex-wrap: wrap; gap: 2px 4px; margin: 0 0 4px; }
+.legend button { border: 0; background: none; color: inherit; font: inherit; font-size: 12.5px; padding: 1px 6px;
+                 cursor: pointer; border-radius: 6px; }
+.legend button:hover { background: var(--page); }
+.legend button.off { opacity: 0.35; }
+.legend i { display: inline-block; width: 13px; height: 9px; border-radius: 2px; margin-right: 5px; }
+#measured { margin: 6px 0 10px; }
+#time { touch-action: pan-y; }
+.paper { display: none; }
+@media (max-width: 640px) {
+  header { padding: 14px 14px 12px; }
+  h1 { font-size: 20px; overflow-wrap: anywhere; }
+  main { padding: 10px 8px 32px; }
+  section { padding: 10px 8px 12px; border-radius: 8px; }
+  .cards { grid-template-columns: repeat(auto-fill, minmax(130px, 1fr)); gap: 8px; }
+  .card { padding: 8px 10px; }
+  .card b { font-size: 18px; }
+  table { font-size: 12.5px; }
+  th, td { padding-right: 8px; }
+  td.text { min-width: 11em; }
+  .js-plotly-plot:not(#time) .modebar-container { display: none; }
+}
+@page { size: A4; margin: 12mm 10mm; }
+@media print {
+  * { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
+  body { background: white; font-size: 12px; }
+  header { padding: 0 0 8px; }
+  main { padding: 8px 0 0; max-width: none; }
+  section { border: 0; padding: 0; border-radius: 0; }
+  .card, .js-plotly-plot, tr, .note { break-inside: avoid; }
+  .paper > div:not(:last-child) { break-after: page; }
+  section:has(> .paper), section:has(> .paths) ~ section:has(> .paths) { break-before: page; }
+  .paths { display: block; }
+  h2, .note { break-after: avoid; }
+  thead { display: table-header-group; }
+  th { position: static; }
+  .scroll, pre { max-height: none; overflow: visible; }
+  table { font-size: 10.5px; }
+  pre { font-size: 9.5px; white-space: pre-wrap; overflow-wrap: anywhere; }
+  .modebar-container, .updatemenu-container, #time { display: none !important; }
+  .paper { display: block; }
+}
 """
 
 

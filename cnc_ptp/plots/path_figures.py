@@ -1,4 +1,7 @@
-"""The path of a run in the plane and in space: the actual one, or the set values against the program."""
+"""The path of a run in the plane and in space: the actual one, or the set values against the program.
+
+`meta` of a figure says which trace has the places over time, for places.js.
+"""
 
 from __future__ import annotations
 
@@ -11,11 +14,12 @@ import numpy as np
 import numpy.typing as npt
 import plotly.graph_objects as go
 
-from cnc_ptp.plots.colours import FAINT, GRID, RED
+from cnc_ptp.plots.colours import FAINT, GRID, INK, RED
 from cnc_ptp.plots.report_figures import compact, style
 from cnc_ptp.recording.decimate import path_points
 from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, Recorded
 from cnc_ptp.recording.rows import axis_label, standing
+from cnc_ptp.wire.layout import Records
 
 Floats = npt.NDArray[np.float64]
 HEIGHT = 520
@@ -28,11 +32,13 @@ class Colouring:
     title: str
     unit: str
     values: Floats
+    digits: int = 0
 
     @property
     def bar(self) -> dict[str, Any]:
         title = "<br>".join(filter(None, (self.title, self.unit)))
-        return {"title": {"text": title}, "thickness": 12, "outlinewidth": 0, "tickformat": ",.0f"}
+        ticks = ",.0f" if self.digits == 0 else ".2~g"
+        return {"title": {"text": title}, "thickness": 12, "outlinewidth": 0, "tickformat": ticks}
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,21 +65,30 @@ def path_axes(recorded: Recorded, units: Mapping[str, str]) -> list[str]:
 
 
 def actual_path_figures(recorded: Recorded, units: Mapping[str, str]) -> list[go.Figure]:
-    """The actual path, coloured by feed. None if no channel moves along a path."""
+    """The actual path, coloured by feed or following error. None if no channel moves along a path."""
     axes = path_axes(recorded, units)
     on_path = any(np.any(rows["path_velocity"]) for rows in recorded.of_type(CHANNEL_STATE).values())
     return path_figures(_actual_path(recorded, axes), axes) if len(axes) >= 2 and on_path else []
 
 
 def _actual_path(recorded: Recorded, axes: Sequence[str]) -> Path:
-    states = [recorded.of_type(AXIS_STATE)[name] for name in axes]
+    states = [
+        (recorded.of_type(AXIS_STATE) if recorded.reduced is None else recorded.reduced.paths)[name] for name in axes
+    ]
     length = min(len(rows) for rows in states)
     columns = [rows["actual_position"][:length] for rows in states]
-    velocity = np.stack([rows["actual_velocity"][:length] for rows in states])
     chosen = path_points(columns)
-    feed = np.sqrt((velocity[:, chosen] ** 2).sum(axis=0)) * 60.0
     points = np.stack([column[chosen] for column in columns])
-    return Path(points, recorded.seconds(states[0]["cycle"][chosen]), [Colouring("feed", "mm/min", feed)])
+    parts = [rows[:length][chosen] for rows in states]
+    feed, error = magnitude(parts, "actual_velocity") * 60.0, magnitude(parts, "following_error")
+    colourings = [Colouring("feed", "mm/min", feed), Colouring("following error", "mm", error, digits=4)]
+    return Path(points, recorded.seconds(states[0]["cycle"][chosen]), colourings)
+
+
+def magnitude(axes: Sequence[Records], field: str) -> Floats:
+    """Of a field over all axes, (n,)."""
+    size: Floats = np.sqrt(sum(rows[field] ** 2 for rows in axes))
+    return size
 
 
 def path_figures(path: Path, axes: Sequence[str]) -> list[go.Figure]:
@@ -84,11 +99,11 @@ def path_figures(path: Path, axes: Sequence[str]) -> list[go.Figure]:
     return figures
 
 
-def _hover(axes: Sequence[str], colour: str, unit: str) -> str:
+def _hover(axes: Sequence[str], colour: str, colouring: Colouring) -> str:
     places = "<br>".join(
         f"{escape(axis_label(axis))} %{{{place}:.3f}}" for axis, place in zip(axes, "xyz", strict=False)
     )
-    return f"{places}<br>%{{customdata:.3f}} s<br>%{{{colour}:.0f}} {unit}<extra></extra>"
+    return f"{places}<br>%{{customdata:.3f}} s<br>%{{{colour}:.{colouring.digits}f}} {colouring.unit}<extra></extra>"
 
 
 def _coordinates(points: Floats, axes: int, *, precise: bool) -> dict[str, npt.NDArray[Any]]:
@@ -105,15 +120,12 @@ def _plane_figure(path: Path, axes: Sequence[str]) -> go.Figure:
         name="run",
         customdata=compact(path.time, precise=False),
         marker={"color": compact(colouring.values, precise=False), "size": 4, **_scale(colouring)},
-        hovertemplate=_hover(axes[:2], "marker.color", colouring.unit),
+        hovertemplate=_hover(axes[:2], "marker.color", colouring),
     )
     figure = go.Figure([line, marks])
     if path.programmed is not None:
         figure.add_trace(go.Scatter(**_coordinates(path.programmed, 2, precise=True), **PROGRAMMED))
-    style(figure, HEIGHT)
-    figure.update_layout(showlegend=False, margin={"l": 70, "r": 10, "t": 20, "b": 50}, hovermode="closest")
-    figure.update_xaxes(title_text=f"{escape(axis_label(axes[0]))} in mm")
-    figure.update_yaxes(title_text=f"{escape(axis_label(axes[1]))} in mm", scaleanchor="x", scaleratio=1)
+    style_plane(figure, axes, [1])
     _add_choice(figure, path, 1, "marker", axes[:2])
     return figure
 
@@ -126,12 +138,31 @@ def _space_figure(path: Path, axes: Sequence[str]) -> go.Figure:
         name="run",
         customdata=compact(path.time, precise=False),
         line={"color": compact(colouring.values, precise=False), "width": 4, **_scale(colouring, bar=precise)},
-        hovertemplate=_hover(axes, "line.color", colouring.unit),
+        hovertemplate=_hover(axes, "line.color", colouring),
     )
     figure = go.Figure([line])
     if path.programmed is not None:
         figure.add_trace(go.Scatter3d(**_coordinates(path.programmed, 3, precise=True), **PROGRAMMED))
+    style_space(figure, axes, [0])
+    _add_choice(figure, path, 0, "line", axes)
+    return figure
+
+
+def style_plane(figure: go.Figure, axes: Sequence[str], places: Sequence[int]) -> None:
+    """`places`: traces with the places over time."""
     style(figure, HEIGHT)
+    figure.update_layout(showlegend=False, margin={"l": 70, "r": 10, "t": 20, "b": 50}, hovermode="closest")
+    figure.update_layout(meta={"places": [*places]})
+    figure.update_xaxes(title_text=f"{escape(axis_label(axes[0]))} in mm")
+    figure.update_yaxes(title_text=f"{escape(axis_label(axes[1]))} in mm", scaleanchor="x", scaleratio=1)
+
+
+def style_space(figure: go.Figure, axes: Sequence[str], places: Sequence[int]) -> None:
+    """The same in space, with a trace for the places under the cursor."""
+    nowhere = [None] * len(places)
+    figure.add_trace(go.Scatter3d(x=nowhere, y=nowhere, z=nowhere, **CURSOR))
+    style(figure, HEIGHT)
+    figure.update_layout(meta={"places": [*places], "cursor": len(figure.data) - 1})
     sides = {
         f"{place}axis": {
             "title": {"text": f"{escape(axis_label(axis))} in mm"},
@@ -146,8 +177,33 @@ def _space_figure(path: Path, axes: Sequence[str]) -> go.Figure:
         margin={"l": 0, "r": 0, "t": 0, "b": 0},
         scene={"aspectmode": "data", "camera": camera, **sides},
     )
-    _add_choice(figure, path, 0, "line", axes)
-    return figure
+
+
+def figures_of_runs(runs: Sequence[tuple[str, Recorded, str]], axes: Sequence[str]) -> list[go.Figure]:
+    """The actual paths of some recordings, by name and colour, in the plane and, with a third axis, in space."""
+    kinds = [go.Scatter, go.Scatter3d][: len(axes) - 1]
+    figures = [go.Figure() for _ in kinds]
+    for name, recorded, colour in runs:
+        path = _actual_path(recorded, axes)
+        for count, (kind, figure) in enumerate(zip(kinds, figures, strict=True), start=2):
+            places = "<br>".join(
+                f"{escape(axis_label(axis))} %{{{at}:.3f}}" for axis, at in zip(axes[:count], "xyz", strict=False)
+            )
+            trace = kind(
+                **_coordinates(path.points, count, precise=True),
+                mode="lines",
+                name=name,
+                customdata=compact(path.time, precise=False),
+                line={"color": colour, "width": 1.6 if count == 2 else 3},
+                hovertemplate=f"{name}<br>{places}<br>%{{customdata:.3f}} s<extra></extra>",
+            )
+            figure.add_trace(trace)
+    for figure, dress in zip(figures, (style_plane, style_space), strict=False):
+        dress(figure, axes, range(len(runs)))
+        legend = {"x": 0.0, "y": 1.0, "xanchor": "left", "yanchor": "bottom", "orientation": "h"}
+        figure.update_layout(showlegend=True, legend=legend, margin={"t": 44})
+    figures[-1].update_traces(showlegend=False, selector={"name": "cursor"})
+    return figures
 
 
 PROGRAMMED: dict[str, Any] = {
@@ -156,6 +212,13 @@ PROGRAMMED: dict[str, Any] = {
     "line": {"color": RED.set, "width": 1.2},
     "hovertemplate": "programmed<extra></extra>",
 }
+CURSOR: dict[str, Any] = {
+    "mode": "markers",
+    "name": "cursor",
+    "marker": {"color": INK, "size": 7, "line": {"color": "white", "width": 2}},
+    "hoverinfo": "skip",
+}
+"""The place at the time under the cursor; places.js moves it. In the plane it is an element over the plot."""
 
 
 def _scale(colouring: Colouring, *, bar: bool = True) -> dict[str, Any]:
@@ -171,7 +234,7 @@ def _add_choice(figure: go.Figure, path: Path, trace: int, kind: str, axes: Sequ
     for colouring in path.colourings:
         given = {"color": compact(colouring.values, precise=False), **_scale(colouring)}
         changes = {f"{kind}.{name}": [value] for name, value in given.items() if name not in ("colorscale", "cmin")}
-        changes["hovertemplate"] = [_hover(axes, f"{kind}.color", colouring.unit)]
+        changes["hovertemplate"] = [_hover(axes, f"{kind}.color", colouring)]
         buttons.append({"label": colouring.title, "method": "restyle", "args": [changes, [trace]]})
     place = {"type": "buttons", "direction": "right", "x": 0.0, "xanchor": "left", "y": 1.0, "yanchor": "bottom"}
     figure.update_layout(updatemenus=[{**place, "showactive": True, "active": 0, "buttons": buttons}])

@@ -19,7 +19,7 @@ from cnc_ptp.plots.page import (
     table,
     text_cell,
 )
-from cnc_ptp.plots.path_figures import Colouring, Path, path_axes, path_figures
+from cnc_ptp.plots.path_figures import Colouring, Path, magnitude, path_axes, path_figures
 from cnc_ptp.plots.program_run import BlockPass, Floats, ProgramRun, program_run
 from cnc_ptp.plots.report_figures import ROW_GAP, ROW_HEIGHT, compact, style
 from cnc_ptp.plots.surface_sections import surface_sections
@@ -32,6 +32,8 @@ from cnc_ptp.recording.statistics import axis_units
 COLOURS = ("feed", "acceleration", "block")
 POINTS = 20_000
 """Of a path that is drawn; longer ones are thinned out."""
+LENGTHS = 3000
+"""Times of the length that the cursor knows."""
 MM_PER_MIN = 60.0
 PATH_NOTE = (
     "Set values of the run; the red line is the programmed path. Zoom into the plane to see how corners are rounded. "
@@ -95,16 +97,17 @@ def run_path(run: ProgramRun, colour: str) -> Path:
     """Set values of the run, thinned out; `colour` is the colouring that is shown first."""
     positions = run.column("set_position")
     chosen = thinned(positions)
+    axes = [rows[chosen] for rows in run.axes]
     order = np.zeros(len(run.length))
     for block in run.blocks[1:]:
         order[block.begin] = 1.0
     colourings = {
         "feed": Colouring("feed", "mm/min", run.channel["path_velocity"][chosen] * MM_PER_MIN),
-        "acceleration": Colouring("acceleration", "mm/s²", run.magnitude("set_acceleration")[chosen]),
+        "acceleration": Colouring("acceleration", "mm/s²", magnitude(axes, "set_acceleration")),
         "block": Colouring("block", "", (1.0 + np.cumsum(order))[chosen]),
     }
     first = colourings.pop(colour)
-    time = (run.channel["cycle"][chosen] - run.channel["cycle"][0]) * run.cycle_time
+    time = run.channel["cycle"][chosen] * run.cycle_time
     programmed = None if run.programmed is None else run.programmed[:, thinned(run.programmed)]
     return Path(positions[:, chosen], time, [first, *colourings.values()], programmed)
 
@@ -138,6 +141,9 @@ def length_figure(run: ProgramRun) -> go.Figure:
     figure.update_annotations(x=0.0, xanchor="left", font={"size": 13, "color": INK})
     figure.update_xaxes(showticklabels=True)
     figure.update_xaxes(title_text="length in mm", row=len(titles), col=1)
+    chosen = np.unique(np.linspace(0, len(run.length) - 1, LENGTHS).astype(np.int64))
+    times = run.channel["cycle"][chosen] * run.cycle_time
+    figure.update_layout(meta={"lengths": run.length[chosen].round(4).tolist(), "times": times.round(6).tolist()})
     return figure
 
 

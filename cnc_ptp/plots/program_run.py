@@ -77,11 +77,6 @@ class ProgramRun:
         """A field of the axes, (axes, n)."""
         return np.stack([rows[field] for rows in self.axes])
 
-    def magnitude(self, field: str) -> Floats:
-        """Over all axes of the path, (n,)."""
-        size: Floats = np.sqrt((self.column(field) ** 2).sum(axis=0))
-        return size
-
 
 def program_run(recorded: Recorded, nodes: Sequence[str]) -> ProgramRun | None:
     """The run of the first channel that moves along a path, over the axes `nodes`; None if there is none."""

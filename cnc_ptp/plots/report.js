@@ -1,5 +1,6 @@
 "use strict";
-// Every cycle when zoomed, scales that follow, a cursor through all plots with a reference. Reads what columns.py wrote.
+// Every cycle when zoomed, scales that follow, a cursor through all plots, two marks between which it measures. Reads
+// what columns.py wrote. window.page is what places.js and paper.js share with it.
 (function () {
   const plot = document.getElementById("time");
   const source = document.getElementById("columns");
@@ -7,6 +8,7 @@
   const data = JSON.parse(source.textContent);
   const lines = data.lines;
   const MOST_POINTS = 6000;
+  const STRIDE = data.stride; // cycles from one point of a column to the next
   const NO_NUMBER = -2147483648;
   const NEAR = 4; // pixels that a click may move
 
@@ -58,7 +60,7 @@
     const x = [];
     const y = [];
     const add = (i) => {
-      if (x.length && i > add.last && line.cycle.at(i) - line.cycle.at(add.last) > i - add.last) {
+      if (x.length && i > add.last && line.cycle.at(i) - line.cycle.at(add.last) > STRIDE * (i - add.last)) {
         x.push(null);
         y.push(null);
       }
@@ -85,22 +87,28 @@
     return { x, y };
   }
 
-  // words beside the marks of commands, as far as there is room up to the next mark
+  // words beside the marks of events and commands, as far as there is room up to the next mark of the same row
 
   const LETTER = 5.6; // pixels
   const MARK = 20;
-  const marks = plot.data.findIndex((trace) => trace.meta === "commands");
+  const ROWS = ["events", "commands"].map((row) => plot.data.flatMap((trace, i) => (trace.meta === row ? [i] : [])));
 
-  function commandWords() {
-    if (marks < 0) return null;
-    const trace = plot.data[marks];
-    const places = Array.from(trace.x, (time) => plot._fullLayout.xaxis.d2p(time));
-    return trace.customdata.map((words, i) => {
-      const next = i + 1 < places.length ? places[i + 1] : plot._fullLayout._size.w;
-      const letters = Math.floor((next - places[i] - MARK) / LETTER);
-      if (places[i] < 0 || letters < 6) return "";
-      return words.length <= letters ? words : words.slice(0, letters - 1) + "\u2026";
-    });
+  function words() {
+    const texts = {};
+    for (const row of ROWS) {
+      const marks = row.flatMap((index) =>
+        Array.from(plot.data[index].x, (time, i) => ({ index, i, left: plot._fullLayout.xaxis.d2p(time) }))
+      );
+      marks.sort((one, other) => one.left - other.left);
+      marks.forEach(({ index, i, left }, place) => {
+        const next = place + 1 < marks.length ? marks[place + 1].left : plot._fullLayout._size.w;
+        const letters = Math.floor((next - left - MARK) / LETTER);
+        const text = plot.data[index].customdata[i];
+        const none = left < 0 || letters < 6;
+        (texts[index] ||= [])[i] = none ? "" : text.length <= letters ? text : text.slice(0, letters - 1) + "\u2026";
+      });
+    }
+    return texts;
   }
 
   // zoom
@@ -153,19 +161,22 @@
       const margin = high > low ? 0.06 * (high - low) : Math.max(1e-6, 0.05 * Math.abs(low));
       ranges[axis + ".range"] = [low - margin, high + margin];
     }
-    const words = commandWords();
-    if (words) await Plotly.restyle(plot, { text: [words] }, [marks]);
+    const texts = words();
+    const marks = Object.keys(texts);
+    if (marks.length) await Plotly.restyle(plot, { text: marks.map((index) => texts[index]) }, marks.map(Number));
     await Plotly.update(plot, { x: xs, y: ys }, ranges, traces.map((trace) => trace.index));
   }
 
-  // cursor and reference
+  // cursor and marks
 
   const layer = document.createElement("div");
   layer.className = "cursor-layer";
   plot.style.position = "relative";
   plot.appendChild(layer);
+  const measured = document.getElementById("measured");
   let cursor = null; // s
-  let reference = null;
+  let marks = []; // s, of A and B
+  const page = (window.page = { plot, data, followers: [], setCursor, marks: () => marks });
 
   const size = () => plot._fullLayout._size;
   const toTime = (left) => plot._fullLayout.xaxis.p2d(left - size().l);
@@ -186,8 +197,23 @@
   }
 
   function valueAt(line, time) {
-    const i = Math.min(line.n - 1, indexAt(line, time - 0.5 * data.cycle_time));
-    return Math.abs(line.time(i) - time) < 1.5 * data.cycle_time ? line.value(i) : NaN;
+    const i = Math.min(line.n - 1, indexAt(line, time - 0.5 * STRIDE * data.cycle_time));
+    return Math.abs(line.time(i) - time) < 1.5 * STRIDE * data.cycle_time ? line.value(i) : NaN;
+  }
+
+  // value, difference and slope of a line between two times, as texts
+  function difference(line, from, to) {
+    const [before, value] = [valueAt(line, from), valueAt(line, to)];
+    const digits = digitsOf(line);
+    const text = (number, write, of) => (Number.isFinite(number) ? write(number, of) : "\u2013");
+    const slope = (value - before) / (to - from);
+    const fine = Math.max(0, 4 - Math.ceil(Math.log10(Math.abs(slope) + 1e-12)));
+    return {
+      before: text(before, short, digits),
+      value: text(value, short, digits),
+      change: text(value - before, signed, digits),
+      slope: text(slope, signed, Math.min(9, fine)) + " /s",
+    };
   }
 
   function element(className, style, text) {
@@ -199,11 +225,12 @@
     return made;
   }
 
-  function drawLine(time, className) {
+  function drawLine(time, className, name) {
     const left = toLeft(time);
     if (left < size().l || left > size().l + size().w) return;
     const style = { left: left + "px", top: size().t + "px", height: size().h + "px" };
     element(className, style);
+    if (name) element("cursor-name", { left: left + 2 + "px", top: size().t + size().h + 2 + "px" }, name);
   }
 
   function drawValues(axis, of) {
@@ -211,30 +238,75 @@
     const right = plot.clientWidth - size().l - size().w + 4;
     const made = element("cursor-values", { right: right + "px", top: box._offset + 3 + "px" });
     for (const trace of of) {
-      const value = valueAt(trace.line, cursor);
-      const before = reference === null ? NaN : valueAt(trace.line, reference);
-      const digits = digitsOf(trace.line);
-      const words = (number, write) => (Number.isNaN(number) ? "\u2013" : write(number, digits));
-      const difference = reference === null ? "" : "  \u0394y " + words(value - before, signed);
-      const row = document.createElement("span");
       const shown = plot._fullData[trace.index];
+      const row = document.createElement("span");
+      const { value, change, slope } = difference(trace.line, marks.length ? marks[0] : cursor, cursor);
       row.style.color = shown.line.color;
-      row.textContent = (of.length > 1 ? shown.name + " " : "") + words(value, short) + difference;
+      const behind = marks.length ? "  \u0394 " + change + "  " + slope : "";
+      row.textContent = (of.length > 1 ? shown.name + " " : "") + value + behind;
       made.appendChild(row);
     }
   }
 
   function draw() {
     layer.textContent = "";
-    if (reference !== null) drawLine(reference, "cursor-line reference");
+    marks.forEach((mark, i) => drawLine(mark, "cursor-line mark", "AB"[i]));
+    for (const follow of page.followers) follow(cursor);
     if (cursor === null) return;
     drawLine(cursor, "cursor-line");
-    const difference = reference === null ? "" : "   \u0394t " + signed(cursor - reference, TIME_DIGITS) + " s";
-    const left = Math.min(toLeft(cursor) + 6, plot.clientWidth - 230);
-    element("cursor-time", { left: left + "px", top: size().t - 4 + "px" }, short(cursor, TIME_DIGITS) + " s" + difference);
+    const behind = marks.length ? "   \u0394t " + signed(cursor - marks[0], TIME_DIGITS) + " s" : "";
+    const left = Math.max(0, Math.min(toLeft(cursor) + 6, plot.clientWidth - 180));
+    element("cursor-time", { left: left + "px", top: size().t - 4 + "px" }, short(cursor, TIME_DIGITS) + " s" + behind);
     const rows = {};
     for (const trace of traces) if (plot._fullData[trace.index].visible === true) (rows[axisOf(trace)] ||= []).push(trace);
     for (const [axis, of] of Object.entries(rows)) drawValues(axis, of);
+  }
+
+  function setCursor(time) {
+    cursor = time;
+    draw();
+  }
+
+  // the marks: A, then B, then A anew
+
+  function setMark(time) {
+    marks = marks.length === 1 ? [marks[0], time] : [time];
+    measure();
+    draw();
+  }
+
+  function clear() {
+    marks = [];
+    measure();
+    draw();
+  }
+
+  function measure() {
+    measured.textContent = "";
+    measured.hidden = marks.length < 2;
+    if (measured.hidden) return;
+    const [a, b] = marks;
+    const head = ["A " + short(a, TIME_DIGITS) + " s, B " + short(b, TIME_DIGITS) + " s, \u0394t " + signed(b - a, TIME_DIGITS) + " s", "A", "B", "\u0394", "slope"];
+    const table = document.createElement("table");
+    const add = (cells, kind) => {
+      const row = table.insertRow();
+      cells.forEach((text, i) => {
+        const cell = row.appendChild(document.createElement(kind));
+        if (i) cell.className = "number";
+        cell.textContent = text;
+      });
+    };
+    add(head, "th");
+    for (const trace of traces) {
+      const shown = plot._fullData[trace.index];
+      if (shown.visible !== true) continue;
+      const { before, value, change, slope } = difference(trace.line, a, b);
+      const title = plot.layout.annotations[Number(axisOf(trace).slice(5)) - 1].text;
+      add([title + ", " + shown.name, before, value, change, slope], "td");
+    }
+    const box = measured.appendChild(document.createElement("div"));
+    box.className = "scroll";
+    box.appendChild(table);
   }
 
   function leftOf(event) {
@@ -242,43 +314,59 @@
     return left >= size().l && left <= size().l + size().w ? left : null;
   }
 
+  // pointers: mouse and finger
   function listen() {
     let pressed = null;
-    plot.addEventListener("mousemove", (event) => {
+    plot.addEventListener("pointermove", (event) => {
       const left = leftOf(event);
-      cursor = left === null ? null : snapped(toTime(left));
-      draw();
+      setCursor(left === null ? null : snapped(toTime(left)));
     });
-    plot.addEventListener("mouseleave", () => {
-      cursor = null;
-      draw();
-    });
-    plot.addEventListener("mousedown", (event) => (pressed = event.target.closest(".nsewdrag") ? event : null), true);
+    plot.addEventListener("pointerleave", (event) => event.pointerType === "touch" || setCursor(null));
+    plot.addEventListener("pointerdown", (event) => (pressed = event.target.closest(".nsewdrag") ? event : null), true);
     window.addEventListener(
-      "mouseup",
+      "pointerup",
       (event) => {
         if (pressed === null) return;
         const moved = Math.abs(event.clientX - pressed.clientX) + Math.abs(event.clientY - pressed.clientY);
         const left = leftOf(pressed);
         pressed = null;
-        if (moved > NEAR || left === null || event.detail > 1) return;
-        reference = snapped(toTime(left));
-        draw();
+        if (moved > NEAR || left === null) return;
+        setMark(snapped(toTime(left)));
       },
       true
     );
-    window.addEventListener("keydown", (event) => {
-      if (event.key !== "Escape") return;
-      reference = null;
-      draw();
-    });
+    plot.on("plotly_doubleclick", clear); // the whole run; its clicks are no marks
+    window.addEventListener("keydown", (event) => event.key === "Escape" && clear());
     plot.on("plotly_relayout", zoomed);
     plot.on("plotly_restyle", ([change]) => "text" in change || zoomed()); // the words are its own
+    for (const button of document.querySelectorAll(".legend button")) button.addEventListener("click", () => toggle(button));
+  }
+
+  function toggle(button) {
+    const off = button.classList.toggle("off");
+    const group = plot.data.flatMap((trace, i) => (trace.legendgroup === button.dataset.group ? [i] : []));
+    Plotly.restyle(plot, { visible: off ? "legendonly" : true }, group);
+  }
+
+  // a narrow page: room for the plots, and a finger scrolls instead of zooming
+  async function fit() {
+    const narrow = plot.clientWidth < 600;
+    const change = { "margin.l": narrow ? 66 : 86, "margin.r": narrow ? 8 : 24 };
+    change["margin.t"] = narrow ? 56 : 34; // the buttons stand over the title
+    for (const legend of Object.keys(plot.layout).filter((name) => /^legend\d/.test(name))) {
+      change[legend + ".yanchor"] = narrow ? "top" : "bottom"; // in the plot instead of beside its title
+      change[legend + ".font.size"] = narrow ? 9 : 12;
+      change[legend + ".bgcolor"] = narrow ? "rgba(255,255,255,0.7)" : "rgba(0,0,0,0)";
+    }
+    if (window.matchMedia("(pointer: coarse)").matches) change.dragmode = false;
+    if (plot.layout.margin.l !== change["margin.l"]) await Plotly.relayout(plot, change);
   }
 
   async function begin() {
     await unpackAll();
     listen();
+    await fit();
+    window.addEventListener("resize", fit);
     await zoomed();
     plot.dataset.cycles = "all"; // every cycle is there
   }

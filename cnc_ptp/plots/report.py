@@ -33,6 +33,9 @@ from cnc_ptp.recording.reader import SPINDLE_STATE, Recorded
 from cnc_ptp.recording.rows import PlotRow, standing, time_rows
 from cnc_ptp.recording.statistics import in_machine_order, last_diagnostics, summary, torque_units
 
+OF_EVERY_CYCLE = (recorded_program, surface_sections, thread_sections)
+"""Sections that a long recording does not get."""
+
 
 def report_page(recorded: Recorded, *, program: str = "", date: str = "") -> str:
     """The page as text. `program` and `date` are in its head; any text in it is escaped."""
@@ -44,10 +47,9 @@ def report_page(recorded: Recorded, *, program: str = "", date: str = "") -> str
         "<main>",
         _incomplete(recorded),
         _cards(figures),
+        reduced_note(recorded),
         _paths(actual_path_figures(recorded, figures["units"])),
-        recorded_program(recorded),
-        surface_sections(recorded),
-        thread_sections(recorded),
+        *([] if recorded.reduced else [section_of(recorded) for section_of in OF_EVERY_CYCLE]),
         _times(recorded, figures["units"]),
         _events(recorded.events, recorded.cycle_time_ns * 1e-9),
         _commands(recorded, {**dict.fromkeys(recorded.of_type(SPINDLE_STATE), "deg"), **figures["units"]}),
@@ -68,6 +70,20 @@ def plots_page(recorded: Recorded, rows: list[PlotRow], *, title: str) -> str:
 
 def _incomplete(recorded: Recorded) -> str:
     return "" if recorded.complete else f'<p class="warn">Incomplete recording: {escape(recorded.missing)}.</p>'
+
+
+def reduced_note(recorded: Recorded) -> str:
+    """What a page of a long recording leaves out."""
+    reduced = recorded.reduced
+    if reduced is None:
+        return ""
+    step = recorded.cycle_time_ns * 1e-9
+    return (
+        '<p class="warn">A long recording: the plots over time show the smallest and largest values of each '
+        f"{2 * reduced.stride * step:g} s, the path a place each {reduced.path_stride * step:g} s. The figures above "
+        "are those of all cycles. A part of it (--from, --to) has every cycle, and sections on programs, threads and "
+        "faces.</p>"
+    )
 
 
 def _cards(figures: dict[str, Any]) -> str:
@@ -96,7 +112,11 @@ def _paths(figures: list[go.Figure]) -> str:
         return ""
     plots = "".join(f"<div>{plot_div(figure, f'path{number}')}</div>" for number, figure in enumerate(figures))
     style = "paths two" if len(figures) > 1 else "paths"
-    return section("Path", f'<div class="{style}">{plots}</div>', "Actual position, coloured by the actual feed.")
+    return section(
+        "Path",
+        f'<div class="{style}">{plots}</div>',
+        "Actual position, coloured by the actual feed or by the following error of its axes together.",
+    )
 
 
 def _times(recorded: Recorded, units: dict[str, str]) -> str:

@@ -14,13 +14,13 @@ from plotly.subplots import make_subplots
 
 from cnc_ptp.plots.colours import BY_AXIS, EDGE, FAINT, GRID, INK, PURPLE, RED
 from cnc_ptp.protocol.axis_states import AxisStateCode
-from cnc_ptp.protocol.blocks import CommandRecord, Severity
+from cnc_ptp.protocol.blocks import CommandRecord, Event, Severity
 from cnc_ptp.protocol.channel_states import ChannelStateCode
 from cnc_ptp.recording.columns import packed
 from cnc_ptp.recording.command_words import command_words, shortened
 from cnc_ptp.recording.decimate import line_points
 from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, SPINDLE_STATE, Recorded
-from cnc_ptp.recording.rows import OTHER, SET, PlotRow
+from cnc_ptp.recording.rows import ACTUAL, OTHER, SET, PlotRow
 from cnc_ptp.recording.statistics import axis_units
 from cnc_ptp.wire.layout import Records
 
@@ -29,7 +29,7 @@ SET_COLOUR, ACTUAL_COLOUR = "#5b93d6", "#d9480f"
 COLOURS = [*(pair.set for pair in BY_AXIS), *(pair.actual for pair in BY_AXIS)]
 PRECISE = ("position", "angle", "following error")
 """Keep all digits."""
-ROW_HEIGHT, ROW_GAP, TOP, BOTTOM = 150, 54, 84, 48
+ROW_HEIGHT, ROW_GAP, TOP, BOTTOM = 150, 54, 34, 48
 BAND_HEIGHT = 24
 MOST_BANDS = 4000
 MOST_MARKS = 100
@@ -86,13 +86,23 @@ def rows_figure(recorded: Recorded, rows: Sequence[PlotRow]) -> go.Figure:
     figure.update_annotations(x=0.0, xanchor="left", font={"size": 13, "color": INK})
     _mark_commands(figure, recorded)
     legend = {"orientation": "h", "traceorder": "normal", "x": 0.0, "xanchor": "left"}
-    figure.update_layout(legend={**legend, "yref": "container", "y": 1.0 - 34 / figure.layout.height, "yanchor": "top"})
     for number, row in enumerate(rows, start=2):
         if row.legend:
             top = figure.layout[f"yaxis{number}"].domain[1]
             place = {"x": 1.0, "xanchor": "right", "y": top, "yanchor": "bottom"}
             figure.update_layout({f"legend{number}": {**legend, **place}})
     return figure
+
+
+def legend_entries(figure: go.Figure) -> list[tuple[str, str, str]]:
+    """Group, name and colour of what has no legend beside its plot: states, marks, set and actual values."""
+    found: dict[str, tuple[str, str, str]] = {}
+    for trace in figure.data:
+        if not trace.showlegend and (isinstance(trace.meta, str) or trace.type == "bar" or trace.name in (SET, ACTUAL)):
+            colour = trace.line.color if trace.name in (SET, ACTUAL) else trace.marker.color
+            plain = colour if isinstance(colour, str) else INK
+            found.setdefault(trace.legendgroup, (trace.legendgroup, trace.name, plain))
+    return list(found.values())
 
 
 def time_range(recorded: Recorded) -> list[float]:
@@ -113,14 +123,18 @@ def time_columns(recorded: Recorded, rows: Iterable[PlotRow]) -> dict[str, Any]:
             place = cycles[id(line.rows)] = len(packed_cycles)
             packed_cycles.append(packed(line.rows["cycle"]))
         values.append({"cycles": place, "factor": line.factor, "values": packed(line.rows[line.field])})
-    return {"cycle_time": recorded.cycle_time_ns * 1e-9, "cycles": packed_cycles, "lines": values}
+    return {
+        "cycle_time": recorded.cycle_time_ns * 1e-9,
+        "stride": recorded.stride,
+        "cycles": packed_cycles,
+        "lines": values,
+    }
 
 
 def _add_lines(figure: go.Figure, recorded: Recorded, row: PlotRow, number: int, serial: int) -> None:
     """The lines of a row; `meta` says which of all lines of the figure it is."""
-    shown = {trace.name for trace in figure.data}
     for index, line in enumerate(row.lines):
-        cycles, values = line_points(line.rows["cycle"], line.rows[line.field])
+        cycles, values = line_points(line.rows["cycle"], line.rows[line.field], stride=recorded.stride)
         figure.add_trace(
             go.Scatter(
                 x=compact(cycles * (recorded.cycle_time_ns * 1e-9), precise=recorded.last_cycle > 2_000_000),
@@ -128,7 +142,7 @@ def _add_lines(figure: go.Figure, recorded: Recorded, row: PlotRow, number: int,
                 mode="lines",
                 name=escape(line.name),
                 legendgroup=line.name,
-                showlegend=row.legend or (line.role != OTHER and line.name not in shown),
+                showlegend=row.legend,
                 legend=f"legend{number}" if row.legend else "legend",
                 line={"color": colour_of(row, index), "width": 2.6 if line.role == SET and len(row.lines) > 1 else 1.3},
                 hoverinfo="skip",
@@ -143,6 +157,8 @@ def _add_lines(figure: go.Figure, recorded: Recorded, row: PlotRow, number: int,
 def colour_of(row: PlotRow, index: int) -> str:
     """Set and actual values have theirs; other lines of a row one each."""
     line = row.lines[index]
+    if line.colour:
+        return line.colour
     if line.role != OTHER:
         return SET_COLOUR if line.role == SET else ACTUAL_COLOUR
     if line.name == "following error":
@@ -180,7 +196,7 @@ def _add_states(figure: go.Figure, recorded: Recorded) -> None:
     names = [*(["commands"] if recorded.commands else []), "events", *(name for name, _, _ in reversed(units))]
     bands: dict[str, list[tuple[str, float, float]]] = {}
     for name, rows, codes in units:
-        for state, begin, end in state_bands(rows, codes, recorded.cycle_time_ns * 1e-9):
+        for state, begin, end in state_bands(rows, codes, recorded.cycle_time_ns * 1e-9, recorded.stride):
             bands.setdefault(state, []).append((name, begin, end))
     for state in sorted(bands, key=list(STATE_COLOURS).index):
         _add_bands(figure, state, bands[state])
@@ -203,6 +219,7 @@ def _add_bands(figure: go.Figure, state: str, bands: list[tuple[str, float, floa
             orientation="h",
             name=label,
             legendgroup=state,
+            showlegend=False,
             marker={"color": STATE_COLOURS[state], "line": {"width": 0}},
             hovertemplate=f"%{{y}}: {label}<br>%{{customdata[0]:.3f}} s to %{{customdata[1]:.3f}} s<extra></extra>",
         ),
@@ -211,7 +228,9 @@ def _add_bands(figure: go.Figure, state: str, bands: list[tuple[str, float, floa
     )
 
 
-def state_bands(rows: Records, codes: type[IntEnum], cycle_time: float) -> Iterator[tuple[str, float, float]]:
+def state_bands(
+    rows: Records, codes: type[IntEnum], cycle_time: float, stride: int = 1
+) -> Iterator[tuple[str, float, float]]:
     """Stretches of one state: name, start and end in s. Of more than MOST_BANDS the shortest are left out."""
     if len(rows) == 0:
         return
@@ -223,10 +242,11 @@ def state_bands(rows: Records, codes: type[IntEnum], cycle_time: float) -> Itera
     known = {int(code): code.name for code in codes}
     for start, end in zip(starts[kept], ends[kept], strict=True):
         name = known.get(int(states[start]), "DISABLED")
-        yield name, float(rows["cycle"][start]) * cycle_time, (float(rows["cycle"][end]) + 1.0) * cycle_time
+        yield name, float(rows["cycle"][start]) * cycle_time, (float(rows["cycle"][end]) + stride) * cycle_time
 
 
 def _add_events(figure: go.Figure, recorded: Recorded) -> None:
+    """A mark for each event, in the colour of its severity; report.js writes number and text where there is room."""
     for severity, colour in SEVERITY_COLOURS.items():
         events = [event for event in recorded.events if event.severity == severity]
         if not events:
@@ -235,16 +255,28 @@ def _add_events(figure: go.Figure, recorded: Recorded) -> None:
             go.Scatter(
                 x=[event.cycle * recorded.cycle_time_ns * 1e-9 for event in events],
                 y=["events"] * len(events),
-                mode="markers",
+                mode="markers+text",
                 name=severity.name.lower(),
                 legendgroup=f"event {severity.name}",
+                showlegend=False,
+                meta="events",
                 marker={"color": colour, "size": 11, "symbol": "diamond", "line": {"color": "white", "width": 1}},
-                text=[f"{escape(event.source)}: {escape(event.text)}" for event in events],
-                hovertemplate="%{x:.3f} s %{text}<extra></extra>",
+                text=[""] * len(events),
+                textposition="middle right",
+                textfont={"size": 10, "color": colour},
+                customdata=[escape(shortened(event_words(event), LETTERS)) for event in events],
+                hovertemplate="%{x:.3f} s %{customdata}<extra></extra>",
             ),
             row=1,
             col=1,
         )
+
+
+def event_words(event: Event) -> str:
+    """`P-ERR-23020 y: following error …`"""
+    number = f"P-ERR-{event.error_id} " if event.error_id and not event.text.startswith("P-") else ""
+    source = "" if event.source in event.text else f"{event.source}: "
+    return f"{number}{source}{event.text}"
 
 
 def _add_commands(figure: go.Figure, recorded: Recorded) -> None:
@@ -266,6 +298,8 @@ def _add_commands(figure: go.Figure, recorded: Recorded) -> None:
             y=["commands"] * len(moments),
             mode="markers+text",
             name="command",
+            legendgroup="command",
+            showlegend=False,
             meta="commands",
             marker={"color": colours, "size": 9, "symbol": "triangle-down"},
             text=[""] * len(words),

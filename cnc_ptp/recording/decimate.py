@@ -16,13 +16,14 @@ MOST_GAPS = 200
 
 
 def line_points(
-    cycles: npt.NDArray[np.uint64], values: npt.NDArray[Any], points: int = POINTS
+    cycles: npt.NDArray[np.uint64], values: npt.NDArray[Any], points: int = POINTS, *, stride: int = 1
 ) -> tuple[Floats, Floats]:
     """Cycle numbers and values of a line, at most about `points` of them: min-max decimation, exact where it is flat.
 
-    Where cycles are missing the line is interrupted by a NaN.
+    Where cycles are missing the line is interrupted by a NaN; `stride`: cycles from one point to the next.
     """
-    breaks = np.flatnonzero(np.diff(cycles.astype(np.int64)) != 1) + 1
+    steps = np.diff(cycles.astype(np.int64))
+    breaks = np.flatnonzero((steps > stride) | (steps < 1)) + 1
     if len(breaks) > MOST_GAPS:
         breaks = breaks[:0]
     parts = []

@@ -83,12 +83,12 @@ class McapIndex(RecordReader):
 
     def attached(self, name: str) -> bytes:
         """The content of an attachment that the file has."""
-        record: Attachment = self.attachment(self._record(self.attachments[name]))
+        record: Attachment = self.attachment(self.record(self.attachments[name]))
         return record.data
 
     def runs(self, place: ChunkPlace, channels: Collection[int]) -> Iterator[MessageRun]:
         """The messages of some channels in a chunk, in the order of their log times as far as it has an index."""
-        record = self._record(place.offset)
+        record = self.record(place.offset)
         if not place.indexes:
             yield from (run for run in self.in_chunk(record) if isinstance(run, MessageRun) and run[0] in channels)
             return
@@ -111,7 +111,7 @@ class McapIndex(RecordReader):
             yield MessageRun(channel, _rows(data, offsets[first:end], int(sizes[first])))
 
     def _message_offsets(self, offset: int) -> npt.NDArray[np.int64]:
-        body = self._record(offset).body
+        body = self.record(offset).body
         if (len(body) - 6) % INDEX_ENTRY.itemsize:
             raise self.corrupt(offset, "the message index is no list of times and offsets")
         offsets: npt.NDArray[np.int64] = np.frombuffer(body[6:], dtype=INDEX_ENTRY)["offset"].astype(np.int64)
@@ -122,7 +122,7 @@ class McapIndex(RecordReader):
     def _bytes(self, offset: int, length: int) -> bytes:
         return os.pread(self._file, length, offset)
 
-    def _record(self, offset: int) -> RawRecord:
+    def record(self, offset: int) -> RawRecord:
         """The record at an offset."""
         head = self._bytes(offset, RECORD_PREFIX.size)
         if len(head) == RECORD_PREFIX.size:
@@ -148,7 +148,7 @@ class McapIndex(RecordReader):
                 self.chunks.append(self._chunk_place(record))
             elif record.opcode == Opcode.METADATA_INDEX:
                 place = self.parse(MetadataIndex.read, record)
-                self.metadata.append(self.parse(Metadata.read, self._record(place.offset)))
+                self.metadata.append(self.parse(Metadata.read, self.record(place.offset)))
             elif record.opcode == Opcode.ATTACHMENT_INDEX:
                 attachment = self.parse(AttachmentIndex.read, record)
                 self.attachments[attachment.name] = attachment.offset

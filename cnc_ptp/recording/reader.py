@@ -17,7 +17,7 @@ from mcap_ros2.decoder import DecoderFactory
 from cnc_ptp.protocol.blocks import CommandRecord, Event, read_values
 from cnc_ptp.protocol.event_values import read_event_values
 from cnc_ptp.recording.bag import QOS
-from cnc_ptp.recording.mcap_chunks import McapRecords, MessageRun, RawRecord
+from cnc_ptp.recording.mcap_chunks import McapRecords, MessageRun, RawRecord, RecordReader
 from cnc_ptp.recording.mcap_file import METADATA, MISSING
 from cnc_ptp.recording.origin import require_known_format
 from cnc_ptp.recording.parts import files_of
@@ -71,6 +71,27 @@ class Coordinates(NamedTuple):
     origin: tuple[float, ...]
 
 
+@dataclass(frozen=True, slots=True)
+class Reduced:
+    """What a long recording (`long_recording.py`) keeps of all its cycles.
+
+    stride       cycles from one of its states to the next; two together are the extremes of 2 · stride cycles
+    last_cycle   of all states
+    path_stride  cycles from one of `paths` to the next, which are states as they were, by axis
+    largest      following error and its cycle, by axis
+    in_program   cycles in which a program was being executed, by channel
+    missing      blocks
+    """
+
+    stride: int
+    last_cycle: int
+    path_stride: int
+    paths: dict[str, Records]
+    largest: dict[str, tuple[float, int]]
+    in_program: dict[str, int]
+    missing: int
+
+
 class RawMessage(NamedTuple):
     """A message as it lies in the file."""
 
@@ -87,7 +108,7 @@ class Recorded:
     `states[topic]` is a structured array (n,) in the order of the file with the fields of the message (`cycle`,
     `set_position`, …, `header.stamp.sec`, `header.stamp.nanosec`), `threads[channel]` one with the cycles of its
     threads. `complete` is False when the file was cut off;
-    `missing` then says what is missing.
+    `missing` then says what is missing. `reduced`: of a long recording, whose states are extremes of many cycles.
     """
 
     path: Path
@@ -104,6 +125,12 @@ class Recorded:
     commands: list[CommandRecord] = field(default_factory=list)
     diagnostics: list[Diagnostic] = field(default_factory=list)
     coordinates: list[Coordinates] = field(default_factory=list)
+    reduced: Reduced | None = None
+
+    @property
+    def stride(self) -> int:
+        """Cycles from one state to the next; more than 1 where they were reduced."""
+        return 1 if self.reduced is None else self.reduced.stride
 
     @property
     def start_ns(self) -> int:
@@ -116,6 +143,8 @@ class Recorded:
     @property
     def last_cycle(self) -> int:
         """The last cycle of which a state was recorded, -1 if none was."""
+        if self.reduced is not None:
+            return self.reduced.last_cycle
         return max((int(rows["cycle"].max()) for rows in self.states.values()), default=-1)
 
     @property
@@ -144,12 +173,13 @@ def read_recording(path: str | Path) -> Recorded:
 
     Raises CncError 26001 to 26005 (see McapRecords, schemas), 26014 and 26016.
     """
-    reader = _Reader(Path(path))
+    reader = Reader(Path(path))
     for file in files_of(Path(path)):
-        reader.begin(file)
-        for record in reader.records:
+        records = McapRecords(file)
+        reader.begin(records)
+        for record in records:
             reader.take(record)
-        reader.end_of_file()
+        reader.end_of_file(records.missing)
     return reader.finish()
 
 
@@ -190,7 +220,7 @@ def _raw_messages(info: TopicInfo, run: MessageRun) -> Iterator[RawMessage]:
 class _Names:
     """Schemas and channels of a file as they are read."""
 
-    def __init__(self, records: McapRecords, by_name: dict[str, TopicInfo]) -> None:
+    def __init__(self, records: RecordReader, by_name: dict[str, TopicInfo]) -> None:
         """`by_name`: topics of the files before, to which those of this file are added."""
         self.records = records
         self.schemas: dict[int, Schema] = {}
@@ -223,10 +253,10 @@ class _Names:
         return info
 
 
-class _Reader:
+class Reader:
     """Collects the contents of the records of files, one after another."""
 
-    records: McapRecords
+    records: RecordReader
     names: _Names
 
     def __init__(self, path: Path) -> None:
@@ -243,33 +273,37 @@ class _Reader:
             OFFSETS: self._offsets,
         }
 
-    def begin(self, file: Path) -> None:
-        self.records = McapRecords(file)
-        self.names = _Names(self.records, self._by_name)
+    def begin(self, records: RecordReader) -> None:
+        """The records that come are those of another file."""
+        self.records = records
+        self.names = _Names(records, self._by_name)
 
-    def end_of_file(self) -> None:
-        if self.records.missing:
-            self._missing.append(self.records.missing)
+    def end_of_file(self, missing: str) -> None:
+        """`missing`: what the file lacks, if anything."""
+        if missing:
+            self._missing.append(missing)
 
     def take(self, record: RawRecord) -> None:
         self.names.take(record)
         if record.opcode == Opcode.CHUNK:
             for item in self.records.in_chunk(record):
                 if isinstance(item, MessageRun):
-                    self._messages(item, record)
+                    self.messages(item, record)
                 else:
                     self.names.add(item)
         elif record.opcode == Opcode.ATTACHMENT:
             attachment = self.records.attachment(record)
-            self._attachment(attachment.name, attachment.data)
+            self.attachment(attachment.name, attachment.data)
         elif record.opcode == Opcode.METADATA:
-            metadata = self.records.parse(Metadata.read, record)
-            if metadata.name == METADATA:
-                require_known_format(self.recorded.path, metadata.metadata)
-                self.recorded.metadata.update(metadata.metadata)
+            self.metadata(self.records.parse(Metadata.read, record))
 
-    def _attachment(self, name: str, data: bytes) -> None:
-        if not name.startswith((CHECKPOINT, CHECKPOINT_TEXT)):  # of no use but for a replay: run_inputs.py
+    def metadata(self, metadata: Metadata) -> None:
+        if metadata.name == METADATA:
+            require_known_format(self.recorded.path, metadata.metadata)
+            self.recorded.metadata.update(metadata.metadata)
+
+    def attachment(self, name: str, data: bytes) -> None:
+        if is_kept(name):
             self.recorded.attachments[name] = data.decode(errors="replace")
 
     def finish(self) -> Recorded:
@@ -293,7 +327,7 @@ class _Reader:
         else:
             self.recorded.states[info.topic] = rows
 
-    def _messages(self, run: MessageRun, record: RawRecord) -> None:
+    def messages(self, run: MessageRun, record: RawRecord) -> None:
         info = self.names.topic(run, record)
         times = run.head["log_time"]
         info.first_ns = int(times.min()) if info.count == 0 else min(info.first_ns, int(times.min()))
@@ -347,6 +381,11 @@ class _Reader:
     def _offsets(self, _time: int, topic: str, message: Any) -> None:
         channel = topic.removeprefix("/").removesuffix("/offsets")
         self.recorded.coordinates.append(coordinates(channel, message))
+
+
+def is_kept(attachment: str) -> bool:
+    """Checkpoints are of no use but for a replay (run_inputs.py)."""
+    return not attachment.startswith((CHECKPOINT, CHECKPOINT_TEXT))
 
 
 def coordinates(channel: str, offsets: Any) -> Coordinates:

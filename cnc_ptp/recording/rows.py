@@ -24,13 +24,14 @@ FEEDFORWARD = ("feedforward_velocity", "additive_velocity", "additive_torque")
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """A field of a unit's states; `role`: set value, actual value, or something else."""
+    """A field of a unit's states; `role`: set value, actual value, or something else; `colour`: "" that of its role."""
 
     name: str
     rows: Records
     field: str
     role: str = OTHER
     factor: float = 1.0
+    colour: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,6 +13,8 @@ from cnc_ptp.recording.reader import AXIS_STATE, SPINDLE_STATE, Recorded
 from cnc_ptp.wire.layout import Records
 
 NOT_RECORDED = 26011
+NEAR_CYCLES = 1e-6
+"""A time in s may be off by rounding."""
 
 
 def selected(
@@ -28,8 +30,8 @@ def selected(
     if begin is None and end is None:
         return recorded
     cycle_time = recorded.cycle_time_ns * 1e-9
-    low = -np.inf if begin is None else begin / cycle_time - 1e-6
-    high = np.inf if end is None else end / cycle_time - 1e-6
+    low = -np.inf if begin is None else begin / cycle_time - NEAR_CYCLES
+    high = np.inf if end is None else end / cycle_time - NEAR_CYCLES
     states = {topic: _between(rows, low, high) for topic, rows in recorded.states.items()}
     if not any(len(rows) for rows in states.values()):
         raise CncError(

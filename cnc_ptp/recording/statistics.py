@@ -69,21 +69,24 @@ def summary(recorded: Recorded) -> dict[str, Any]:
 
 def cycles(recorded: Recorded) -> int:
     """Cycles from the first to the last recorded one."""
-    numbers = [rows["cycle"] for rows in recorded.states.values()]
-    if not numbers:
-        return 0
-    return int(max(column.max() for column in numbers)) - int(min(column.min() for column in numbers)) + 1
+    first = min((int(rows["cycle"].min()) for rows in recorded.states.values()), default=0)
+    return recorded.last_cycle + 1 - first
 
 
 def program_time(recorded: Recorded) -> float | None:
     """Time in s that a channel spent executing a program; the longest of several, None without a channel."""
     channels = recorded.of_type(CHANNEL_STATE)
-    active = [int(np.isin(rows["state"], IN_PROGRAM).sum()) for rows in channels.values()]
+    if recorded.reduced is not None:
+        active = [recorded.reduced.in_program[name] for name in channels]
+    else:
+        active = [int(np.isin(rows["state"], IN_PROGRAM).sum()) for rows in channels.values()]
     return max(active) * recorded.cycle_time_ns * 1e-9 if active else None
 
 
 def missing_blocks(recorded: Recorded) -> int:
     """Blocks missing between the first and the last cycle of each unit, all units together."""
+    if recorded.reduced is not None:
+        return recorded.reduced.missing
     return sum(_missing_blocks(rows, recorded.block_cycles) for rows in recorded.states.values())
 
 
@@ -97,11 +100,16 @@ def largest_following_errors(recorded: Recorded) -> dict[str, Extreme]:
     """The largest following error by axis; mm or deg."""
     result: dict[str, Extreme] = {}
     for name, rows in recorded.of_type(AXIS_STATE).items():
-        magnitudes = np.nan_to_num(np.abs(rows["following_error"]), nan=np.inf)
-        place = int(magnitudes.argmax())
-        cycle = int(rows["cycle"][place])
-        result[name] = Extreme(float(rows["following_error"][place]), cycle, cycle * recorded.cycle_time_ns * 1e-9)
+        known = largest_error(rows) if recorded.reduced is None else recorded.reduced.largest[name]
+        result[name] = Extreme(*known, known[1] * recorded.cycle_time_ns * 1e-9)
     return result
+
+
+def largest_error(rows: Records) -> tuple[float, int]:
+    """The largest following error and its cycle; NaN is the largest."""
+    magnitudes = np.nan_to_num(np.abs(rows["following_error"]), nan=np.inf)
+    place = int(magnitudes.argmax())
+    return float(rows["following_error"][place]), int(rows["cycle"][place])
 
 
 def axis_units(recorded: Recorded) -> dict[str, str]:

@@ -140,6 +140,22 @@ class _Unit:
             topic.add(encoder, data)
 
 
+class MessageFile(Protocol):
+    """What a recording needs of its file; see McapFile."""
+
+    @property
+    def chunks_ready(self) -> bool: ...
+    @property
+    def size(self) -> int: ...
+    def attachment(self, name: str, media_type: str, data: bytes, log_time: int) -> None: ...
+    def metadata(self, name: str, values: dict[str, str]) -> None: ...
+    def channel(self, topic: str, type_name: str, schema_text: str, metadata: dict[str, str]) -> int: ...
+    def messages(self, channel_id: int, rows: Bytes, times: Times) -> None: ...
+    def close_chunk(self) -> None: ...
+    def finish_chunks(self) -> None: ...
+    def close(self) -> None: ...
+
+
 class Recording:
     """A recording being written.
 
@@ -165,8 +181,12 @@ class Recording:
         level: int = 1,
         notes: Mapping[str, str] = NO_NOTES,
         settings: Settings = AS_USUAL,
+        file: MessageFile | None = None,
     ) -> None:
-        """`notes` for its metadata. With a split in its `settings`, `path` is a folder of parts (PartsFolder)."""
+        """`notes` for its metadata. With a split in its `settings`, `path` is a folder of parts (PartsFolder).
+
+        `file`: what takes the messages instead of an MCAP file.
+        """
         self.path = Path(path)
         self.stamps = Stamps(start_ns, cycle_time_ns)
         self._chunk_cycles = max(1, round(chunk_seconds * 1e9 / cycle_time_ns))
@@ -184,20 +204,22 @@ class Recording:
         self._files = {MACHINE_FILE: machine_yaml, **settings.files}
         times = {"start_ns": str(start_ns), "cycle_time_ns": str(cycle_time_ns)}
         self._notes = {FORMAT: str(FORMAT_VERSION), **times, **notes}
-        self._file = self._new_file()
+        self._file = self._new_file() if file is None else file
+        self._describe()
 
-    def _new_file(self) -> McapFile:
-        """The file, or the next part of several, with what a reader must know of the run."""
+    def _new_file(self) -> MessageFile:
+        """The file, or the next part of several."""
         compression = self._settings.compression
         if self._folder is None:
-            file = McapFile(self.path, self._level, compression=compression)
-        else:
-            part = self._folder.next_part()
-            file = McapFile(part, self._level, compression=compression, describe=self._folder.add)
+            return McapFile(self.path, self._level, compression=compression)
+        part = self._folder.next_part()
+        return McapFile(part, self._level, compression=compression, describe=self._folder.add)
+
+    def _describe(self) -> None:
+        """Tells the file what a reader must know of the run."""
         for name, text in self._files.items():
-            file.attachment(name, media_type(name), text.encode(), self.stamps.start_ns)
-        file.metadata(METADATA, self._notes)
-        return file
+            self._file.attachment(name, media_type(name), text.encode(), self.stamps.start_ns)
+        self._file.metadata(METADATA, self._notes)
 
     def block(self, name: str, block: CycleBlock, *, handshakes: bool = True) -> None:
         """`/<name>/block` and, per cycle, `/<name>/state`.
@@ -358,6 +380,7 @@ class Recording:
         self._part_begin = first_cycle
         self._file.close()
         self._file = self._new_file()
+        self._describe()
         for name, topic in self._topics.items():
             topic.channel_id = self._announce(name, topic.type_names[1])
 

@@ -36,6 +36,8 @@ COMMANDS = {
     "replay",
     "report",
     "plot",
+    "layout",
+    "recover",
     "params",
     "identify",
     "circle",

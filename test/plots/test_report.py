@@ -188,9 +188,22 @@ def test_torque_units_come_from_the_machine_file(recorded):
 def test_path_is_drawn_in_the_plane_and_in_space(recorded):
     plane, space = actual_path_figures(recorded, {})
     assert [trace.type for trace in plane.data] == ["scatter", "scatter"]
-    assert [trace.type for trace in space.data] == ["scatter3d"]
+    assert [trace.name for trace in space.data] == ["run", "cursor"]
+    assert space.data[0].type == "scatter3d"
     radius = np.hypot(plane.data[1].x, plane.data[1].y)
     assert radius == pytest.approx(np.full(len(radius), 42.7), abs=0.1)
+
+
+def test_path_can_be_coloured_by_the_following_error(recorded):
+    """Of all axes together: the root of the sum of squares; on the circle 40 mm · 2π / (16.7 1/s), and 3 mm/s of z."""
+    for figure in actual_path_figures(recorded, {}):
+        [menu] = figure.layout.updatemenus
+        assert [button.label for button in menu.buttons] == ["feed", "following error"]
+        changes, _ = menu.buttons[1].args
+        [colours] = next(value for name, value in changes.items() if name.endswith(".color"))
+        expected = np.hypot(40.0 * 2.0 * np.pi / 16.7, 3.0 / 16.7)
+        assert colours == pytest.approx(np.full(len(colours), expected), rel=1e-5)
+        assert changes["hovertemplate"][0].endswith(":.4f} mm<extra></extra>")
 
 
 @pytest.mark.parametrize(("axes", "count"), [((), 0), (("x",), 0), (("x", "y"), 1), (("u", "v", "w"), 2)])

@@ -35,7 +35,7 @@ PROBE = """
     const layout = plot._fullLayout, box = plot.getBoundingClientRect();
     const x = box.left + layout._size.l + layout.xaxis.d2p(time), y = box.top + layout.yaxis2._offset + 20;
     const where = target || plot;
-    where.dispatchEvent(new MouseEvent(kind, { clientX: x, clientY: y, bubbles: true, detail: 1 }));
+    where.dispatchEvent(new PointerEvent(kind, { clientX: x, clientY: y, bubbles: true }));
   };
   const until = async (done) => {
     for (let i = 0; i < 100 && !done(); i++) await new Promise((next) => setTimeout(next, 50));
@@ -49,20 +49,27 @@ PROBE = """
   found.speed = of("s: speed in rpm", "set");
   found.marks = plot.data.find((one) => one.meta === "commands").text;
   const drag = plot.querySelector(".nsewdrag");
-  mouse("mousedown", 0.26, drag);
-  mouse("mouseup", 0.26, document);
-  mouse("mousemove", 0.2802);
+  const click = (time) => {
+    mouse("pointerdown", time, drag);
+    mouse("pointerup", time, document);
+  };
+  click(0.26);
+  mouse("pointermove", 0.2802);
   await until(() => plot.querySelector(".cursor-time"));
   found.time = plot.querySelector(".cursor-time").textContent;
   found.values = Array.from(plot.querySelectorAll(".cursor-values")).map((box) => box.innerText);
   found.lines = plot.querySelectorAll(".cursor-line").length;
+  click(0.28);
+  found.measured = document.getElementById("measured").innerText;
   window.dispatchEvent(new KeyboardEvent("keydown", { key: "Escape" }));
+  found.cleared = document.getElementById("measured").hidden;
   found.without = plot.querySelectorAll(".cursor-line").length;
   before = scale();
   await Plotly.relayout(plot, { "xaxis.range[0]": 0, "xaxis.range[1]": 2 });
   await until(() => scale() !== before);
   found.again = of("X: position in mm", "actual");
   found.words = plot.data.find((one) => one.meta === "commands").text;
+  found.events = plot.data.filter((one) => one.meta === "events").map((one) => one.text);
 
   const update = Plotly.update;
   const zoom = (begin, end) => Plotly.relayout(plot, { "xaxis.range[0]": begin, "xaxis.range[1]": end });
@@ -196,15 +203,37 @@ def test_cursor_and_reference(probe, position):
     assert probe["time"] == "0.28 s   Δt +0.02 s"
     assert (probe["lines"], probe["without"]) == (2, 1)
     [speed] = [text for text in probe["values"] if text.startswith("set 560")]
-    assert speed.splitlines() == ["set 560  Δy +40", "actual 548.8  Δy +39.2"]
+    assert speed.splitlines() == ["set 560  Δ +40  +2000 /s", "actual 548.8  Δ +39.2  +1960 /s"]
     now, before = position(280), position(260)
     [found] = [
         match
         for text in probe["values"]
-        if (match := re.search(r"actual (\S+)  Δy (\S+)", text))
+        if (match := re.search(r"actual (\S+)  Δ (\S+)", text))
         and float(match[1].replace("−", "-")) == pytest.approx(now, abs=1e-3)
     ]
     assert float(found[2].replace("−", "-")) == pytest.approx(now - before, abs=1e-3)
+
+
+def test_two_marks_measure(probe, position):
+    """Values, difference and slope of each line between them."""
+    head, *rows = [line.split("\t") for line in probe["measured"].splitlines()]
+    assert head == ["A 0.26 s, B 0.28 s, Δt +0.02 s", "A", "B", "Δ", "slope"]
+    values = {name: cells for name, *cells in rows}
+    assert values["s: speed in rpm, actual"] == ["509.6", "548.8", "+39.2", "+1960 /s"]
+    before, now, change, slope = (
+        float(cell.removesuffix(" /s").replace("−", "-")) for cell in values["X: position in mm, actual"]
+    )
+    assert (before, now) == (pytest.approx(position(260), abs=1e-3), pytest.approx(position(280), abs=1e-3))
+    assert change == pytest.approx(position(280) - position(260), abs=1e-3)
+    assert slope == pytest.approx((position(280) - position(260)) / 0.02, rel=1e-3)
+    assert probe["cleared"] is True
+
+
+def test_words_of_events_have_room(probe):
+    info, warning, error = probe["events"]
+    assert info == ["channel: program started"]
+    assert warning[0].startswith("P-ERR-24010 spindle s: speed 980 rpm")
+    assert error[0].startswith("P-ERR-23020 axis y: following error")
 
 
 def test_words_of_commands_have_room(probe):
@@ -212,3 +241,92 @@ def test_words_of_commands_have_room(probe):
     assert probe["words"][1].startswith("channel start")
     assert probe["words"][2].startswith("x move absolute target = 9999")
     assert probe["marks"] == ["", "", ""]  # none in the part that is shown
+
+
+PLACES = """
+<script>
+(async function () {
+  const plot = document.getElementById("time"), found = {};
+  while (plot.dataset.cycles !== "all") await new Promise((next) => setTimeout(next, 50));
+  const [plane, space, length] = ["path0", "path1", "length"].map((name) => document.getElementById(name));
+  const until = async (done) => {
+    for (let i = 0; i < 100 && !done(); i++) await new Promise((next) => setTimeout(next, 50));
+  };
+  found.narrow = [document.documentElement.scrollWidth, document.documentElement.clientWidth, plot.clientWidth];
+  const mark = plane.querySelector(".cursor-place");
+  found.before = mark.hidden;
+  const place = () => {
+    const { xaxis, yaxis } = plane._fullLayout;
+    return [xaxis.p2d(parseFloat(mark.style.left) - xaxis._offset), yaxis.p2d(parseFloat(mark.style.top) - yaxis._offset)];
+  };
+  const cursor = space.data[space.data.length - 1];
+  window.page.setCursor(0.3);
+  await until(() => cursor.x[0] !== null);
+  found.plane = place();
+  found.space = ["x", "y", "z"].map((axis) => cursor[axis][0]);
+  plane.emit("plotly_hover", { points: [{ customdata: 0.75 }] });
+  found.time = plot.querySelector(".cursor-time").textContent;
+  found.again = place();
+  plane.emit("plotly_unhover", {});
+  found.after = mark.hidden;
+  const colours = (kind) => plane._fullLayout.updatemenus[0].buttons.map((button) => button.label);
+  found.colours = colours();
+  window.dispatchEvent(new Event("beforeprint"));
+  found.paper = Array.from(document.querySelectorAll(".paper > div"), (box) => box.querySelectorAll(".main-svg").length);
+  found.heights = Array.from(document.querySelectorAll(".paper > div"), (box) => parseFloat(box.style.height));
+  found.widths = [plane, space].map((one) => one.layout.width);
+  window.dispatchEvent(new Event("afterprint"));
+  found.screen = document.querySelectorAll(".paper > div").length;
+  const result = document.createElement("pre");
+  result.id = "probe";
+  result.textContent = encodeURIComponent(JSON.stringify(found));
+  document.body.appendChild(result);
+})();
+</script>
+"""
+
+
+@pytest.fixture(scope="module")
+def places(tmp_path_factory):
+    """A whole report in a narrow window."""
+    folder = tmp_path_factory.mktemp("places")
+    smooth_run(folder / "run.mcap", 2.0)
+    page = report_page(read_recording(folder / "run.mcap"))
+    (folder / "run.html").write_text(page.replace("</body></html>", PLACES + "</body></html>"), encoding="utf-8")
+    document, console = open_page(folder / "run.html", width=500)
+    found = re.search(r'<pre id="probe">([^<]*)</pre>', document)
+    assert found, console
+    return json.loads(unquote(found[1]))
+
+
+def test_the_cursor_has_a_place_on_the_paths(places, position):
+    """Of 0.3 s; the circle is that of the actual position."""
+    assert places["before"] is True
+    assert places["plane"][0] == pytest.approx(position(300), abs=0.3)
+    assert places["space"][0] == pytest.approx(position(300), abs=0.01)
+    assert places["space"][2] == pytest.approx(3.0 * 0.3 - 3.0 / 16.7, abs=0.01)
+
+
+def test_a_place_on_a_path_has_a_time(places, position):
+    assert places["time"] == "0.75 s"
+    assert places["again"][0] == pytest.approx(position(750), abs=0.3)
+    assert places["after"] is True
+
+
+def test_the_path_is_coloured_by_feed_and_following_error(places):
+    assert places["colours"] == ["feed", "following error"]
+
+
+def test_a_narrow_page_does_not_scroll_sideways(places):
+    whole, seen, plot = places["narrow"]
+    assert whole <= seen <= 500
+    assert plot < seen
+
+
+def test_paper_has_groups_of_plots(places):
+    """20 plots over time; each group fits on A4 at 96 pixels an inch, between margins of 12 mm."""
+    assert len(places["paper"]) >= 4
+    assert all(count >= 1 for count in places["paper"])
+    assert max(places["heights"]) <= (297 - 24) / 25.4 * 96
+    assert places["widths"] == [700, 700]
+    assert places["screen"] == 0

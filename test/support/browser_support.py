@@ -7,7 +7,7 @@ import subprocess
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 
 
-def open_page(page):
+def open_page(page, width=1400):
     """The document after its scripts have run, and what the browser said on its console."""
     command = [
         BROWSER,
@@ -20,7 +20,7 @@ def open_page(page):
         f"--user-data-dir={page.parent / 'profile'}",
         "--enable-logging=stderr",
         "--virtual-time-budget=40000",
-        "--window-size=1400,1000",
+        f"--window-size={width},1000",
         "--dump-dom",
         page.as_uri(),
     ]

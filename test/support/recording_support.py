@@ -121,18 +121,25 @@ def record(path: Path, blocks: list[tuple[str, CycleBlock]], **options: float) -
 SPEED = 2 * math.pi  # rad/s
 
 
+def smooth_blocks(seconds: float, *, axes: tuple[str, ...] = ("x", "y", "z")) -> list[tuple[str, CycleBlock]]:
+    """The blocks of `smooth_run`, one of each unit after the other: PLC, channel, axes, spindle."""
+    blocks: list[tuple[str, CycleBlock]] = []
+    count = round(seconds * 100)
+    for index in range(count):
+        first = 10 * index
+        blocks += [("plc", PlcBlock(first, 10, index)), ("channel", _channel(first, count * 10))]
+        blocks += [(axis, _axis(first, number)) for number, axis in enumerate(axes)]
+        blocks.append(("s", _spindle(first)))
+    return blocks
+
+
 def smooth_run(path: Path, seconds: float = 2.0, *, axes: tuple[str, ...] = ("x", "y", "z"), text: str = "") -> None:
     """A run as a machine would give it: a helix of radius 40 mm, the spindle runs up, some events and commands."""
     with Recording(path, MACHINE) as recording:
-        count = round(seconds * 100)
-        for index in range(count):
-            first = 10 * index
-            recording.tick(CycleTick(first, 10))
-            recording.block("plc", PlcBlock(first, 10, index))
-            recording.block("channel", _channel(first, count * 10))
-            for number, axis in enumerate(axes):
-                recording.block(axis, _axis(first, number))
-            recording.block("s", _spindle(first))
+        for name, block in smooth_blocks(seconds, axes=axes):
+            if name == "plc":
+                recording.tick(CycleTick(block.first_cycle, 10))
+            recording.block(name, block)
         for event in _events(text):
             recording.event(event)
         recording.command(CommandRecord(0, "channel", "load", '{"program": "bracket.nc"}', True, 0, ""))

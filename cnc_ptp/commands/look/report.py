@@ -1,4 +1,4 @@
-"""`cnc_ptp report`: one HTML page of a recording."""
+"""`cnc_ptp report`: one HTML page of a recording, or of two on top of each other."""
 
 from __future__ import annotations
 
@@ -8,20 +8,34 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from cnc_ptp.commands.output_file import check_page, write_output
+from cnc_ptp.plots.comparison import comparison_page
 from cnc_ptp.plots.report import report_page
+from cnc_ptp.recording.difference import PROGRAM
+from cnc_ptp.recording.long_recording import read_for_report
 from cnc_ptp.recording.origin import require_own
-from cnc_ptp.recording.reader import Recorded, read_recording
+from cnc_ptp.recording.reader import Recorded
 from cnc_ptp.recording.selection import selected
 
 
-def report(recording: str, output: str, begin: float | None, end: float | None, axes: Sequence[str]) -> int:
-    """Writes the page, of a part if asked for; warns when the recording was cut off."""
-    check_page(output, recording=recording)
-    whole = read_recording(recording)
-    require_own(whole.path, whole.metadata, whole.states)
+def report(
+    recording: str,
+    output: str,
+    begin: float | None,
+    end: float | None,
+    axes: Sequence[str],
+    compare: str | None = None,
+    align: str = PROGRAM,
+) -> int:
+    """Writes the page, of a part if asked for, alone or against another recording; warns of one that was cut off."""
+    check_page(output, recording=recording, other_recording=compare)
+    whole = read_own(recording, begin, end)
     recorded = selected(whole, begin=begin, end=end, units=axes)
     made = datetime.now(tz=UTC).strftime("%Y-%m-%d %H:%M UTC")
-    page = report_page(recorded, program=program_of(whole), date=made)
+    if compare is None:
+        page = report_page(recorded, program=program_of(whole), date=made)
+    else:
+        other = selected(read_own(compare, begin, end), begin=begin, end=end, units=axes)
+        page = comparison_page(recorded, other, align=align, date=made)
     write_output(output, page, remains="the recording is unchanged")
     size = Path(output).stat().st_size / 1e6
     first = min((int(rows["cycle"].min()) for rows in recorded.states.values()), default=0)
@@ -29,6 +43,13 @@ def report(recording: str, output: str, begin: float | None, end: float | None, 
     if not recorded.complete:
         print(f"note: {recorded.missing}")
     return 0
+
+
+def read_own(recording: str, begin: float | None, end: float | None) -> Recorded:
+    """Raises CncError of read_for_report, and 26017 for a recording of another program."""
+    recorded = read_for_report(recording, begin, end)
+    require_own(recorded.path, recorded.metadata, recorded.states)
+    return recorded
 
 
 def program_of(recorded: Recorded) -> str:

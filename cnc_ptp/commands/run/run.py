@@ -37,6 +37,7 @@ def run(
     begin: StartPoint | None = None,
     plc: str | None = None,
     recorder: RecorderOptions | None = None,
+    foxglove: int | None = None,
 ) -> int:
     """Runs the graph; prints a summary. Status 1 when a unit ended in error, a node died or the disk was full.
 
@@ -52,7 +53,19 @@ def run(
     if recorder is not None:
         recorder.check(unit_kinds(parameters))
     options = RunOptions(
-        machine, program, scenario, duration, record, free_run, stay, state_rate, dialect, begin, plc, recorder
+        machine=machine,
+        program=program,
+        scenario=scenario,
+        duration=duration,
+        record=record,
+        free_run=free_run,
+        stay=stay,
+        state_rate=state_rate,
+        dialect=dialect,
+        begin=begin,
+        plc=plc,
+        recorder=recorder,
+        foxglove=foxglove,
     )
     with RunProgress() as progress:
 
