@@ -3,100 +3,53 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Sequence
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from cnc_ptp import KERNEL
+from cnc_ptp.commands.arguments import (
+    DIALECT,
+    DIALECT_OF_A_FILE,
+    MACHINE,
+    RECORDING,
+    parse_kinds,
+    words,
+)
+from cnc_ptp.commands.commissioning.options import (
+    circle_options,
+    curve_fit_options,
+    identify_options,
+    require_one_state,
+    require_source,
+)
 from cnc_ptp.commands.completion import (
+    COMPLETE_FROM,
     complete_axis,
     complete_command,
     complete_shown_unit,
     complete_unit,
     complete_word,
 )
-from cnc_ptp.commands.console import print_error
-from cnc_ptp.errors import WRONG_INPUT, CncError
-from cnc_ptp.number_range import DURATION, PERCENT, POSITIVE, RATE, STATES_PER_SECOND
-from cnc_ptp.ros_arguments import client_namespace_option, namespace_option, ros_arguments
-from cnc_ptp.ros_arguments import split as split_ros_arguments
+from cnc_ptp.commands.group import Group, WordsOrCommand
+from cnc_ptp.commands.look.options import is_text, part_options, program_options, require_none, take_plot
+from cnc_ptp.commands.run.options import (
+    graph_options,
+    replay_options,
+    require_an_end,
+    require_variants,
+    run_options,
+    sweep_options,
+    take_changes,
+    take_recorder,
+)
+from cnc_ptp.number_range import POSITIVE, RATE
+from cnc_ptp.ros_arguments import client_namespace_option, ros_arguments
 from cnc_ptp.start_options import start_options, take_start
 
-if TYPE_CHECKING:
-    from cnc_ptp.recording.recorder_options import RecorderOptions
-
-MACHINE = click.argument("machine", type=click.Path(dir_okay=False))
-RECORDING = click.argument("recording", type=click.Path())
-SCENARIO = click.option("--scenario", type=click.Path(dir_okay=False), help="Timed PLC commands (YAML).")
-PROGRAM = click.option("--program", type=click.Path(dir_okay=False), help="NC program for the first channel.")
 CLIENTS = ("status", "do", "jog", "watch")
-MCAP_MAGIC = b"\x89MCAP"
-LIST_KINDS = ("axis", "channel", "tool", "zero", "clamp", "compensation", "startup")
 STARTS_NODES = ("run", "replay", *CLIENTS)
 """Commands that take ROS arguments."""
-
-
-DIALECT = click.option(
-    "--dialect",
-    type=click.Choice(("twincat", "iso")),
-    help="Vocabulary of the program; default: that of the machine file (P-CHAN-90010).",
-)
-DIALECT_OF_A_FILE = click.option(
-    "--dialect", type=click.Choice(("twincat", "iso")), default="twincat", show_default=True, help="Vocabulary."
-)
-
-
-def run_options(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Options that offline run and graph share."""
-    for option in (
-        start_options,
-        click.option("--strict", is_flag=True, help="A refused command makes the exit status 1."),
-        click.option(
-            "--compression",
-            type=click.Choice(("zstd", "lz4", "none")),
-            default="zstd",
-            show_default=True,
-            help="Compression of the recording.",
-        ),
-        click.option(
-            "--split", help="Record in parts of a size or a time, 500MB or 10min; the recording is a folder then."
-        ),
-        click.option("--record-when", help="Begin the recording when a field has this value: 'x.set_velocity != 0'."),
-        click.option("--record", type=click.Path(), help="Write an MCAP recording."),
-        click.option(
-            "--duration", type=DURATION, help="End after this many seconds; default: when everything is finished."
-        ),
-        click.option(
-            "--plc", type=click.Path(dir_okay=False), help="PLC in a file: a Python class Plc with cycle(io)."
-        ),
-        SCENARIO,
-        DIALECT,
-        PROGRAM,
-        MACHINE,
-    ):
-        function = option(function)
-    return function
-
-
-class Group(click.Group):
-    """Prints a refusal as one text and ends with status 2; no traceback. ROS arguments are its context's object."""
-
-    def main(self, args: Sequence[str] | None = None, *rest: Any, **options: Any) -> Any:
-        try:
-            own, ros = split_ros_arguments(sys.argv[1:] if args is None else args)
-        except CncError as error:
-            print_error(error)
-            sys.exit(WRONG_INPUT)
-        return super().main(own, *rest, obj=ros, **options)
-
-    def invoke(self, context: click.Context) -> Any:
-        try:
-            return super().invoke(context)
-        except CncError as error:
-            print_error(error)
-            sys.exit(WRONG_INPUT)
 
 
 @click.group(cls=Group, context_settings={"help_option_names": ["-h", "--help"]})
@@ -130,30 +83,7 @@ def simulate_command(**options: Any) -> None:
 
 @main.command("run")
 @run_options
-@click.option(
-    "--foxglove",
-    type=click.IntRange(1, 65535),
-    is_flag=False,
-    flag_value=8765,
-    metavar="[PORT]",
-    help="Stream the messages of a recording to Foxglove at ws://localhost:PORT; without PORT 8765.",
-)
-@click.option("--free-run", is_flag=True, help="As fast as all nodes follow, instead of in real time.")
-@click.option("--composed", is_flag=True, help="All nodes in one process.")
-@namespace_option
-@click.option(
-    "--recorder", "on_demand", is_flag=True, help="A recorder that records on demand: do recorder start FILE."
-)
-@click.option("--keep", type=POSITIVE, help="Keep the last seconds in memory: do recorder snapshot FILE.")
-@click.option("--snapshots", type=click.Path(file_okay=False), help="Folder for a snapshot at each error; with --keep.")
-@click.option(
-    "--snapshot-when",
-    help="A snapshot also when a field comes to a value: 'x.following_error > 0.1'; with --snapshots.",
-)
-@click.option("--stay", is_flag=True, help="Continue when everything is at a standstill, for commands, until Ctrl-C.")
-@click.option(
-    "--state-rate", type=STATES_PER_SECOND, help="Live states per second on /<unit>/state, 0 = none (P-MACH-00070)."
-)
+@graph_options
 def run_command(**options: Any) -> None:
     """Run a machine as a ROS graph, one process per node."""
     if not options["composed"]:
@@ -163,61 +93,9 @@ def run_command(**options: Any) -> None:
     from cnc_ptp.commands.run.run import run
 
     recorder = take_recorder(options)
-    if options["stay"] and options["duration"] is not None:
-        raise click.UsageError("--stay and --duration exclude each other: --duration stays for that many seconds.")
-    if options["stay"] and options["free_run"]:
-        raise click.UsageError("--stay and --free-run exclude each other: a machine is commanded in real time.")
+    require_an_end(options)
     ros_arguments().require_for_all_nodes("cnc_ptp run")
     sys.exit(run(begin=take_start(options, options["program"]), recorder=recorder, **options))
-
-
-def take_recorder(options: dict[str, Any]) -> RecorderOptions | None:
-    """Takes the options of the recorder out of the others; None where there is none. Raises UsageError."""
-    from cnc_ptp.recording.recorder_options import RecorderOptions
-
-    when, split, keep = options.pop("record_when"), options.pop("split"), options.pop("keep", None)
-    folder, snapshot_when = options.pop("snapshots", None), options.pop("snapshot_when", None)
-    on_demand = options.pop("on_demand", False) or keep is not None
-    compression, record = options.pop("compression"), options["record"]
-    needs = (
-        (when, record, "--record-when needs --record"),
-        (split, record or on_demand or None, "--split needs --record"),
-        (folder, keep, "--snapshots needs --keep"),
-        (snapshot_when, folder, "--snapshot-when needs --snapshots"),
-    )
-    for given, needed, text in needs:
-        if given is not None and needed is None:
-            raise click.UsageError(text)
-    if record is None and not on_demand and options.get("foxglove") is None:
-        return None
-    scenario, plc = options["scenario"], options["plc"]
-    return RecorderOptions(when, split, compression, keep or 0.0, folder, snapshot_when, scenario, plc)
-
-
-def sweep_options(function: Callable[..., Any]) -> Callable[..., Any]:
-    """What varies, what is measured, where it is computed."""
-    for option in (
-        click.option("--scheduler", metavar="ADDRESS", help="Dask scheduler (tcp://host:8786) instead of processes."),
-        click.option("--workers", type=click.IntRange(min=1), help="Processes; default: one for each processor."),
-        click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of random values."),
-        click.option("--optimise", type=click.IntRange(min=1), metavar="N", help="N variants chosen by their results."),
-        click.option("--random", type=click.IntRange(min=1), metavar="N", help="N random variants, instead of a grid."),
-        click.option("--page", type=click.Path(dir_okay=False), help="HTML page to write."),
-        click.option("-o", "--output", required=True, type=click.Path(dir_okay=False), help="Parquet file to write."),
-        click.option(
-            "--goal", "goals", multiple=True, required=True, help="max(following_error.x), max:mean(path_velocity) ..."
-        ),
-        click.option(
-            "--vary", multiple=True, required=True, help="x.getriebe.0.kv=2000:8000:13, =a,b,c, =normal:mean:sigma ..."
-        ),
-        click.option("--duration", type=DURATION, help="End each run after this many seconds."),
-        SCENARIO,
-        DIALECT,
-        PROGRAM,
-        MACHINE,
-    ):
-        function = option(function)
-    return function
 
 
 @main.command("sweep")
@@ -228,23 +106,10 @@ def sweep_command(**options: Any) -> None:
     The runs are compared by goals. There is one for each combination of the values, or for --random ones, or for those
     that an optimiser chooses. What is finished is kept: the same command computes only what is missing.
     """
-    if options["random"] is not None and options["optimise"] is not None:
-        raise click.UsageError("--random and --optimise exclude each other.")
-    if options["workers"] is not None and options["scheduler"] is not None:
-        raise click.UsageError("--workers and --scheduler exclude each other: a scheduler has its own workers.")
-    if options["program"] is None and options["scenario"] is None:
-        raise click.UsageError("--program or --scenario is needed.")
+    require_variants(options)
     from cnc_ptp.commands.run.sweep import sweep
 
     sys.exit(sweep(**options))
-
-
-COMPLETE_FROM = click.option(
-    "--machine",
-    type=click.Path(dir_okay=False),
-    help="Machine file from which completion takes units; without it the running machine.",
-)
-UNIT = click.argument("unit", shell_complete=complete_unit)
 
 
 @main.command("status")
@@ -260,7 +125,7 @@ def status_command(**options: Any) -> None:
 
 
 @main.command("do", context_settings={"ignore_unknown_options": True})
-@UNIT
+@click.argument("unit", shell_complete=complete_unit)
 @click.argument("command", shell_complete=complete_command)
 @click.argument("words", nargs=-1, metavar="[NAME=VALUE]...", shell_complete=complete_word)
 @click.option(
@@ -362,62 +227,21 @@ def check_command(**options: Any) -> None:
 
 
 @main.command("replay")
-@RECORDING
-@click.option(
-    "--verify", is_flag=True, help="Compute the run again and compare every setpoint to the bit (the default)."
-)
-@click.option("--publish", is_flag=True, help="Publish the recorded topics again.")
-@click.option("--rate", type=RATE, default=1.0, show_default=True, help="Factor for --publish, 1 = real time.")
-@click.option("--inputs", is_flag=True, help="Publish PLC inputs too: a machine on this ROS domain acts on them.")
-@click.option("--from", "begin", type=DURATION, help="What if: changes count from this time on, s.")
-@click.option("--to", "end", type=DURATION, help="What if: to this time, s.")
-@click.option("--set", "parameters", multiple=True, metavar="UNIT.NAME=VALUE", help="What if: another parameter.")
-@click.option("--override", type=PERCENT, help="What if: override of the channels, percent.")
-@click.option("--program", type=click.Path(dir_okay=False), help="What if: in place of the loaded program.")
-@click.option("--commands", type=click.Path(dir_okay=False), help="What if: further commands, as a scenario.")
-@click.option("--output", "-o", type=click.Path(dir_okay=False), help="What if: record the changed run.")
-@click.option("--diff", is_flag=True, help="What if: print the difference (always without --output).")
-@click.option("--diff-page", "page", type=click.Path(dir_okay=False), help="What if: a page of both runs (.html).")
-@namespace_option
+@replay_options
 def replay_command(**options: Any) -> None:
     """Compute a recorded run again, also changed, or publish it."""
     from cnc_ptp.commands.run.replay import replay
 
-    names = ("begin", "end", "parameters", "override", "program", "commands", "output", "diff", "page")
-    changes = {name: options.pop(name) for name in names}
-    if any(value not in (None, (), False) for value in changes.values()):
-        if options["verify"] or options["publish"]:
-            raise click.UsageError("--verify and --publish do not go with a changed run; nothing was replayed")
+    changes = take_changes(options)
+    if changes is not None:
         from cnc_ptp.commands.run.what_if import what_if
 
-        changes["begin"] = changes["begin"] or 0.0
         sys.exit(what_if(options["recording"], **changes))
     if not options["publish"]:
         ros_arguments().require_none("cnc_ptp replay without --publish")
         if options["inputs"] or options["rate"] != 1.0:
             raise click.UsageError("--inputs and --rate are options of --publish; nothing was replayed")
     sys.exit(replay(**options))
-
-
-def split(text: str) -> list[str]:
-    """Words with commas or blanks between."""
-    return text.replace(",", " ").split()
-
-
-def words(_context: click.Context, _option: click.Parameter, values: tuple[str, ...]) -> tuple[str, ...]:
-    """The words of an option that may be given again and again."""
-    return tuple(word for value in values for word in split(value))
-
-
-def part_options(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Options for the part of a recording to draw."""
-    for option in (
-        click.option("--axes", callback=words, multiple=True, help="Axes and spindles, the others are left out: x,s"),
-        click.option("--to", "end", type=float, help="Seconds of the recording; without it to its end."),
-        click.option("--from", "begin", type=float, help="Seconds of the recording; without it from its start."),
-    ):
-        function = option(function)
-    return function
 
 
 @main.command("diff")
@@ -498,20 +322,6 @@ def recover_command(**options: Any) -> None:
     sys.exit(recover_file(**options))
 
 
-def program_options(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Options of a plot that are for an NC program alone."""
-    for option in (
-        click.option("--override", type=POSITIVE, help="Override of the path in %; default: 100."),
-        DIALECT,
-        click.option("--colour", type=click.Choice(("feed", "acceleration", "block")), help="Of the path; or feed."),
-        click.option(
-            "--machine", type=click.Path(dir_okay=False), help="FILE is an NC program: run it on this machine."
-        ),
-    ):
-        function = option(function)
-    return function
-
-
 @main.command("plot")
 @click.argument("recording", type=click.Path(), metavar="FILE")
 @click.argument("more_topics", metavar="[TOPIC]...", nargs=-1)
@@ -519,7 +329,7 @@ def program_options(function: Callable[..., Any]) -> Callable[..., Any]:
 @part_options
 @program_options
 @click.option("-o", "--output", type=click.Path(dir_okay=False), help=".svg, .png or .html; RECORDING.svg without it.")
-def plot_command(more_topics: tuple[str, ...], topics: tuple[str, ...], **options: Any) -> None:
+def plot_command(more_topics: tuple[str, ...], **options: Any) -> None:
     """Draw a recording over time, or the path of an NC program.
 
     Of a recording, a TOPIC is a unit and a field of its state, x/set_velocity, or a field of all units that move,
@@ -529,9 +339,7 @@ def plot_command(more_topics: tuple[str, ...], topics: tuple[str, ...], **option
     With --machine FILE is an NC program. It is run offline and becomes an HTML page: the path in space, programmed and
     run; velocity, acceleration and jerk over time and over the path; a table of its blocks.
     """
-    of_program = {name: options.pop(name) for name in ("machine", "colour", "dialect", "override")}
-    of_recording: dict[str, Any] = {"topics": (*topics, *(word for text in more_topics for word in split(text)))}
-    of_recording |= {name: options.pop(name) for name in ("begin", "end", "axes")}
+    of_program, of_recording = take_plot(options, more_topics)
     if of_program["machine"] is not None:
         require_none(of_recording, "is of a recording; with --machine an NC program is drawn")
         from cnc_ptp.commands.look.program_plot import plot_program
@@ -546,34 +354,6 @@ def plot_command(more_topics: tuple[str, ...], topics: tuple[str, ...], **option
     from cnc_ptp.commands.look.plot import plot
 
     sys.exit(plot(**options, **of_recording))
-
-
-def is_text(file: str) -> bool:
-    """Whether a file exists and begins as no recording does."""
-    try:
-        with Path(file).open("rb") as stream:
-            first = stream.read(1)
-    except OSError:
-        return False
-    return first != MCAP_MAGIC[:1] and not file.endswith(".mcap")
-
-
-def require_none(options: dict[str, Any], why: str) -> None:
-    """Raises UsageError for an option that was given."""
-    names = {"begin": "--from", "end": "--to", "topics": "TOPIC"}
-    for name, value in options.items():
-        if value not in (None, ()):
-            raise click.UsageError(f"{names.get(name, f'--{name}')} {why}; nothing was drawn")
-
-
-class WordsOrCommand(Group):
-    """A group whose arguments are those of its command `search`, unless the first one is another command."""
-
-    def parse_args(self, context: click.Context, args: list[str]) -> list[str]:
-        first = args[0] if args else ""
-        if first not in (*self.commands, *context.help_option_names):
-            args = ["search", *args]
-        return super().parse_args(context, args)
 
 
 @main.group("params", cls=WordsOrCommand)
@@ -630,17 +410,6 @@ def lists_group() -> None:
     """Read and write the vendor's ASCII lists of axes, channels, tools."""
 
 
-def parse_kinds(
-    _context: click.Context, _option: click.Parameter, values: tuple[str, ...]
-) -> tuple[tuple[str, str], ...]:
-    """FILE=KIND, each."""
-    pairs = [(file, kind) for value in values for file, _, kind in [value.rpartition("=")]]
-    for file, kind in pairs:
-        if not file or kind not in LIST_KINDS:
-            raise click.BadParameter(f"FILE=KIND is needed, KIND one of {', '.join(LIST_KINDS)}")
-    return tuple(pairs)
-
-
 @lists_group.command("import")
 @click.argument("folder", type=click.Path())
 @click.option("-o", "--output", required=True, type=click.Path(), help="Machine file to write.")
@@ -668,29 +437,6 @@ def lists_export_command(**options: Any) -> None:
     from cnc_ptp.commands.lists import export_folder
 
     sys.exit(export_folder(**options))
-
-
-def identify_options(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Options that all identifications share."""
-    for option in (
-        click.option("--record", type=click.Path(dir_okay=False), help="Write an MCAP recording of the run."),
-        click.option("-o", "--output", type=click.Path(dir_okay=False), help="YAML file to write instead of printing."),
-        click.option("--recording", type=click.Path(), help="Evaluate this recording, drive nothing."),
-        click.option("--machine", type=click.Path(dir_okay=False), help="Machine file; a recording has its own."),
-        click.argument("axis"),
-    ):
-        function = option(function)
-    return function
-
-
-def require_source(options: dict[str, Any]) -> None:
-    """Raises UsageError unless there is something to identify, and only once."""
-    if options["machine"] is None and options["recording"] is None:
-        raise click.UsageError("--machine (drives the axis offline) or --recording is needed.")
-    if options["recording"] is not None and options["record"] is not None:
-        raise click.UsageError("--record and --recording exclude each other: a recording is evaluated without a run.")
-    if options["recording"] is not None and options.get("velocities"):
-        raise click.UsageError("--velocity and --recording exclude each other: a recording is evaluated without a run.")
 
 
 @main.group("identify")
@@ -723,30 +469,7 @@ def identify_dynamics_command(**options: Any) -> None:
 
 
 @main.command("circle")
-@click.argument("machine", type=click.Path(dir_okay=False))
-@click.option("--radius", type=float, required=True, help="mm")
-@click.option("--feed", type=float, required=True, help="mm/min")
-@click.option("--plane", default="XY", show_default=True, help="XY, ZX or YZ.")
-@click.option("--centre", type=float, nargs=2, help="Centre in the plane, mm; without it the position of the axes.")
-@click.option("--direction", type=click.Choice(["both", "ccw", "cw"]), default="both", show_default=True)
-@click.option("--feedforward/--no-feedforward", default=None, help="G135 (off without it, as after a program start).")
-@click.option(
-    "--friction/--no-friction", default=None, help="Friction compensation (without it as in the machine file)."
-)
-@click.option(
-    "--compare",
-    type=click.Choice(["feedforward", "friction", "both"]),
-    help="Run without and with it, and draw all in one picture.",
-)
-@click.option(
-    "-o", "--output", "outputs", type=click.Path(dir_okay=False), multiple=True, help="Picture: .svg, .png or .html."
-)
-@click.option("--magnification", type=float, help="Of the deviations in the picture; without it chosen to fit.")
-@click.option(
-    "--record",
-    type=click.Path(dir_okay=False),
-    help="Keep the run in this MCAP file; those of --compare in FILE_1, FILE_2, … in their order.",
-)
+@circle_options
 def circle_command(**options: Any) -> None:
     """Circle test of a machine, run offline.
 
@@ -754,11 +477,7 @@ def circle_command(**options: Any) -> None:
     """
     from cnc_ptp.commands.commissioning.circle import circle
 
-    compared = options["compare"]
-    for name in ("feedforward", "friction"):
-        if compared in (name, "both") and options[name] is not None:
-            switches = f"--{name} and --no-{name} are for what is not compared."
-            raise click.UsageError(f"--compare {compared} runs without and with {name}: {switches}")
+    require_one_state(options)
     options["feedforward"] = bool(options["feedforward"])
     sys.exit(circle(**options))
 
@@ -769,31 +488,7 @@ def curve_group() -> None:
 
 
 @curve_group.command("fit")
-@click.argument("kind", type=click.Choice(["polynomial", "hyperbola"]))
-@click.option(
-    "--point", "points", multiple=True, metavar="SPEED:ACCELERATION", help="12000:16000 in --unit and °/s²; ascending."
-)
-@click.option("--csv", type=click.Path(dir_okay=False), help="Columns acceleration_deg_s2, speed_deg_s or speed_rpm.")
-@click.option(
-    "--unit",
-    type=click.Choice(["deg/s", "rpm"]),
-    default="deg/s",
-    show_default=True,
-    help="Of the speeds in --point, --limit and --top-speed.",
-)
-@click.option("--limit", type=float, help="Limit speed, one of the points; without it the first.")
-@click.option("--top-speed", type=float, help="Speed up to which the curve must hold; without it the last point.")
-@click.option("--a-min", type=click.IntRange(0, 2**32 - 1), default=0, show_default=True, help="Floor in °/s².")
-@click.option("--spindle", default="s", show_default=True, help="For the lines of the machine file.")
-@click.option("--gear", type=click.IntRange(0, 5), default=0, show_default=True, help="Index of getriebe[i].")
-@click.option(
-    "-o",
-    "--output",
-    "outputs",
-    type=click.Path(dir_okay=False),
-    multiple=True,
-    help="Picture (.svg, .png, .html), or the lines of the machine file (.yaml) instead of printing them.",
-)
+@curve_fit_options
 def curve_fit_command(**options: Any) -> None:
     """Coefficients b1, b2, b3 of an acceleration curve from interpolation points of the drive.
 

@@ -12,6 +12,12 @@ from cnc_ptp.errors import CncError
 PATIENCE = 1.5
 """Seconds to look for a running machine."""
 
+COMPLETE_FROM = click.option(
+    "--machine",
+    type=click.Path(dir_okay=False),
+    help="Machine file from which completion takes units; without it the running machine.",
+)
+
 
 def complete_unit(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[CompletionItem]:
     return matching(unit_kinds_of(context), incomplete)

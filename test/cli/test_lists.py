@@ -133,10 +133,10 @@ def test_kinds_of_lists_by_option(small: Path, tmp_path: Path) -> None:
 
 
 def test_kinds_of_the_option_are_those_of_lists() -> None:
-    from cnc_ptp import cli
+    from cnc_ptp.commands.arguments import LIST_KINDS
     from cnc_ptp.parameters.lists.kinds import WORDS
 
-    assert sorted(cli.LIST_KINDS) == sorted(WORDS)
+    assert sorted(LIST_KINDS) == sorted(WORDS)
 
 
 def test_unknown_lines_and_incomplete_machines(small: Path, tmp_path: Path) -> None:

@@ -1,0 +1,42 @@
+"""What every command of the command line shares: refusals as one text, exit status 2, ROS arguments."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from typing import Any
+
+import click
+
+from cnc_ptp.commands.console import print_error
+from cnc_ptp.errors import WRONG_INPUT, CncError
+from cnc_ptp.ros_arguments import split as split_ros_arguments
+
+
+class Group(click.Group):
+    """Prints a refusal as one text and ends with status 2; no traceback. ROS arguments are its context's object."""
+
+    def main(self, args: Sequence[str] | None = None, *rest: Any, **options: Any) -> Any:
+        try:
+            own, ros = split_ros_arguments(sys.argv[1:] if args is None else args)
+        except CncError as error:
+            print_error(error)
+            sys.exit(WRONG_INPUT)
+        return super().main(own, *rest, obj=ros, **options)
+
+    def invoke(self, context: click.Context) -> Any:
+        try:
+            return super().invoke(context)
+        except CncError as error:
+            print_error(error)
+            sys.exit(WRONG_INPUT)
+
+
+class WordsOrCommand(Group):
+    """A group whose arguments are those of its command `search`, unless the first one is another command."""
+
+    def parse_args(self, context: click.Context, args: list[str]) -> list[str]:
+        first = args[0] if args else ""
+        if first not in (*self.commands, *context.help_option_names):
+            args = ["search", *args]
+        return super().parse_args(context, args)
