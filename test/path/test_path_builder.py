@@ -110,3 +110,21 @@ def test_an_axis_that_short_blocks_must_follow_has_no_curve_over_them() -> None:
     places = places_of(parts + builder.finish())
     behind = places[places[:, 1] > 0.005]
     assert np.abs(behind[:, 3] - 10.0 * behind[:, 1]).max() <= 0.001
+
+
+@pytest.mark.parametrize("wide", [range(101), range(101, 301), range(100, 101)])
+def test_a_corner_of_short_blocks_keeps_the_contour_of_each(wide: range) -> None:
+    """The contour changes in the corner; in the last case one block alone has the wider one (G61)."""
+    points = [*((0.01 * n - 1.01, 0.0, 0.0) for n in range(102)), *((0.0, 0.01 * n, 0.0) for n in range(1, 201))]
+    builder, parts = PathBuilder(XYZ, 0.001), []
+    builder.begin()
+    for block, (begin, end) in enumerate(pairwise(points)):
+        contour = Contour(path_dev=0.03 if block in wide else 0.005)
+        transition = Transition(exact=False, contour=contour, smoothing=Smoothing(PATH_DEV))
+        parts += builder.add(LinkedMotion(Line(begin, end, XYZ), AXES, 100.0, block, transition))
+    places = places_of(parts + builder.finish())
+    assert all(part.entry > 0.0 for part in parts[1:]), "no stop"
+    apart = np.minimum(np.abs(places[:, 0]), np.abs(places[:, 1]))
+    near = (places[:, 0] > -0.005) & (places[:, 1] < 0.005)
+    assert apart[~near].max() <= 0.005 + 1e-9
+    assert np.abs(places[-1] - (0.0, 2.0, 0.0)).max() < 1e-9

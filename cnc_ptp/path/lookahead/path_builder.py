@@ -263,8 +263,9 @@ def permitted_deviation(contour: Contour) -> float:
 
 
 def smoothed_together(motion: LinkedMotion, following: LinkedMotion) -> bool:
-    """Two motions of one smooth curve."""
-    alike = following.transition.smoothing == motion.transition.smoothing and following.feed < inf
+    """Two motions of one smooth curve; a corner on it takes part of several of them, so they have one contour."""
+    (_, contour, smoothing), (_, other, others) = motion.transition, following.transition
+    alike = smoothing == others and contour == other and following.feed < inf
     alike = alike and following.kinematics == motion.kinematics
     return alike and isinstance(following.span.element, Line)
 
