@@ -186,6 +186,27 @@ def test_hold_override_and_reset_at_random_moments() -> None:
         assert max(programmed.distance(Point(*point[:2])) for point in path(bench)) <= 0.05 + 1e-9
 
 
+def test_an_axis_fault_stops_the_path_within_its_tolerance() -> None:
+    """An axis that stands: the others come to rest on the path, in corners and on lines, and it can be met again."""
+    corners = [(0, 0), (30, 0), (30, 20), (10, 25), (12, 5), (0, 10), (0, 0)]
+    lines = ["#CONTOUR MODE [DEV PATH_DEV=0.05]", "G261 F6000", *(f"G01 X{x} Y{y}" for x, y in corners[1:])]
+    programmed = LineString(corners)
+    for seed in range(5):
+        bench = MachineBench(program(*lines), end_when_idle=False)
+        bench.run(random.Random(seed).randrange(10, 140) * 0.01)
+        bench.give("z", "upstream_lost", source="plc")
+        bench.run(0.5)
+        assert [text[:11] for text in bench.errors()] == ["P-ERR-26101", "P-ERR-22012"], seed
+        assert max(programmed.distance(Point(*point[:2])) for point in path(bench)) <= 0.05 + 1e-9
+        smooth(bench)
+        assert bench.give("z", "reset").accepted and bench.give("channel", "reset").accepted
+        bench.run(0.05)
+        assert bench.give("channel", "mdi", text="G01 X10 Y20 F6000").accepted
+        bench.run(2.0)
+        assert bench.position("x") == 10.0 and bench.position("y") == 20.0
+        smooth(bench)
+
+
 def test_a_smoothed_contour_runs_at_feed_rate() -> None:
     """600 chords of 0.05 mm, rounded to 1 µm, on a circle of 30 mm at F6000."""
     angles = np.arange(1, 601) * 0.05 / 30.0

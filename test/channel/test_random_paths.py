@@ -19,7 +19,9 @@ def test_random_programs(seed: int) -> None:
     assert RandomProgram(seed).check().texts == []
 
 
-FAILED = (37, 49, 108, 118, 127, 167, 190, 205, 277, 317, 375, 421, 512, 513, 520, 2135, 2221, 5638, 5716, 5737, 5773)
+FAILED = (
+    37, 49, 108, 118, 127, 167, 190, 205, 277, 317, 375, 421, 512, 513, 520, 2135, 2221, 5638, 5716, 5737, 5773, 7871,
+)  # fmt: skip
 
 
 @pytest.mark.parametrize("seed", FAILED)

@@ -12,9 +12,9 @@ from typing import Final
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.kinematics.kinematics import Kinematics, Point
-from cnc_ptp.nc.contour import Transition
+from cnc_ptp.nc.contour import DEV, DIST, POS, Contour, Transition
 from cnc_ptp.path.geometry import AxisLimits, Line
-from cnc_ptp.path.lookahead.corners import Corner, corner, kink_square, quiet_limits
+from cnc_ptp.path.lookahead.corners import LARGEST_BULGE, Corner, corner, kink_square, quiet_limits
 from cnc_ptp.path.lookahead.parts import Geometry, PathPart
 from cnc_ptp.path.lookahead.smoothing import Smoother
 from cnc_ptp.path.lookahead.spans import Curve, Span, whole
@@ -31,7 +31,7 @@ class LinkedMotion:
     """A motion of the path: its element, the limits of the axes and the feed (mm/s, inf in rapid traverse).
 
     `shown`: the feed, in rapid traverse the velocity that the axes allow; `kinematics`: the element is Cartesian, and
-    these are the axes; `room`: mm at its start that the curve of a corner may take.
+    these are the axes; `room`: mm at its start that the curve of a corner may take, whatever its tolerance.
     """
 
     __slots__ = ("axes", "block", "feed", "kinematics", "room", "shown", "span", "transition")
@@ -71,7 +71,7 @@ class PathBuilder:
         self._smoothed: LinkedMotion | None = None
         """The last motion that went into the smoother."""
         self._room = inf
-        """mm at the start of the smooth curve that a corner before it may take."""
+        """mm of the first short block that a corner before the smooth curve may take; 0 until it is known."""
 
     def begin(self) -> None:
         """A path begins at rest."""
@@ -115,8 +115,8 @@ class PathBuilder:
             return parts + self._link(motion)
         if self._smoother is None:
             self._smoother = Smoother(element.start, self._path_axes, smoothing.path_dev, smoothing.track_dev)
-            self._room = inf if motion.transition.contour is not None else 0.0
-        if self._room == 0.0:  # no contouring between the short blocks: a corner before them is in the first one alone
+            self._room = 0.0
+        if self._room == 0.0:
             self._room = 0.5 * element.length
         self._smoothed = motion
         self._smoother.add(element.target, motion.block, motion.feed)
@@ -189,8 +189,7 @@ class PathBuilder:
 
     def _join(self, last: LinkedMotion, motion: LinkedMotion) -> tuple[Corner | None, float]:
         """The curve between two motions, or else the y with which the kink can be passed; 0 is an exact stop."""
-        contour = last.transition.contour
-        made = None if contour is None else corner(last.span, motion.span, contour, self._path_axes, motion.room)
+        made = corner_between(last, motion, self._path_axes)
         if made is not None and self._passable(made, motion.kinematics):
             return made, inf
         limits = last.axes if last.axes is motion.axes else narrower(last.axes, motion.axes)
@@ -235,9 +234,38 @@ class PathBuilder:
         return parts
 
 
+def corner_between(last: LinkedMotion, motion: LinkedMotion, path_axes: Sequence[int]) -> Corner | None:
+    """The curve between two motions by the contouring of the first; None where there can be none.
+
+    Before a smooth curve it is within half of the first short block. Over more of them only within what their own
+    contouring permits, because it passes their ends at a distance.
+    """
+    contour, following = last.transition.contour, motion.transition.contour
+    if contour is None:
+        return None
+    if motion.room == inf or following == contour:
+        return corner(last.span, motion.span, contour, path_axes)
+    short = corner(last.span, motion.span, contour, path_axes, motion.room)
+    if following is None or POS in (contour.mode, following.mode):
+        return short
+    path_dev = min(permitted_deviation(contour), permitted_deviation(following))
+    both = contour._replace(mode=DEV, path_dev=path_dev, track_dev=min(contour.track_dev, following.track_dev))
+    most = min(contour.pre_dist, contour.post_dist) if contour.mode == DIST else inf
+    long = corner(last.span, motion.span, both, path_axes, most)
+    return long if short is None or (long is not None and long[2].begin > short[2].begin) else short
+
+
+def permitted_deviation(contour: Contour) -> float:
+    """mm by which contouring with DEV or DIST may leave the path at the end of a block."""
+    if contour.mode == DEV:
+        return contour.path_dev
+    return LARGEST_BULGE * min(contour.pre_dist, contour.post_dist)
+
+
 def smoothed_together(motion: LinkedMotion, following: LinkedMotion) -> bool:
-    """Two motions of one smooth curve."""
-    alike = following.transition.smoothing == motion.transition.smoothing and following.feed < inf
+    """Two motions of one smooth curve; a corner on it takes part of several of them, so they have one contour."""
+    (_, contour, smoothing), (_, other, others) = motion.transition, following.transition
+    alike = smoothing == others and contour == other and following.feed < inf
     alike = alike and following.kinematics == motion.kinematics
     return alike and isinstance(following.span.element, Line)
 
