@@ -91,8 +91,6 @@ def group_of(function: Function) -> Group | None:
         kind = function.letter
         if kind == "M":
             kind = M_GROUPS.get(function.number, f"M{function.number}")
-        elif kind == "H":
-            kind = f"H{function.number}"
         return kind, function.spindle, ""
     if isinstance(function, SpindleFunction):
         return "function", function.spindle, ""
