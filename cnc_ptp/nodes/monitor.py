@@ -6,7 +6,6 @@ from collections.abc import Callable
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
-from rclpy.serialization import deserialize_message
 from rclpy.subscription import Subscription
 
 from cnc_ptp import msg
@@ -74,7 +73,7 @@ class RunMonitor(PollingNode):
             self._need(ChannelBlock, msg.ChannelBlock, channel, program.add)
         self._need(PlcBlock, msg.PlcBlock, PLC, self._on_plc)
         self.create_subscription(msg.Event, EVENT, self._on_event, EVENTS)
-        self.poll(msg.CommandRecord, COMMAND, self._on_command, EVENTS)
+        self.create_subscription(msg.CommandRecord, COMMAND, self._on_command, EVENTS)
         self.create_subscription(DiagnosticArray, DIAGNOSTICS, self._on_diagnostics, PLC_INPUT)
         self.create_subscription(msg.LatenessHistogram, LATENESS, self._on_lateness, PLC_INPUT)
 
@@ -152,8 +151,7 @@ class RunMonitor(PollingNode):
             self._last_fault = max(self._last_fault, message.cycle)
         self.notes.add(Note.of_event(message))
 
-    def _on_command(self, data: bytes) -> None:
-        message = deserialize_message(data, msg.CommandRecord)
+    def _on_command(self, message: msg.CommandRecord) -> None:
         self.refused += not message.accepted
         self.notes.add(Note.of_command(message))
 

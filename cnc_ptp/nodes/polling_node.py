@@ -26,8 +26,6 @@ class PollingNode(Node):
         self._inputs_due = 0.0
         self.input_period = 0.0
         """Seconds between two looks for inputs; 0: at each look."""
-        self.arrived_ns = 0
-        """When the polled message that is being received has come: system time in ns."""
         super().__init__(*arguments, **options)
 
     def poll(self, message_type: Any, topic: str, received: Received, quality: QoSProfile) -> Subscription[Any]:
@@ -49,22 +47,21 @@ class PollingNode(Node):
 
     def take_polled(self) -> None:
         """Calls back for every message that has come, topic by topic, oldest first."""
-        self._take_all(self._polled)
+        take_all(self._polled)
         if self._inputs_polled and (now := time.monotonic()) >= self._inputs_due:
             self._inputs_due = now + self.input_period
-            self._take_all(self._inputs_polled)
+            take_all(self._inputs_polled)
 
-    def _take_all(self, polled: Mapping[Subscription[Any], Received]) -> None:
-        for subscription, received in polled.items():
-            handle: Any = subscription.handle
-            while True:
-                with handle:
-                    taken = handle.take_message(subscription.msg_type, True)
-                if taken is None:
-                    break
-                data, about = taken
-                self.arrived_ns = about["received_timestamp"]
-                received(data)
+
+def take_all(polled: Mapping[Subscription[Any], Received]) -> None:
+    for subscription, received in polled.items():
+        handle: Any = subscription.handle
+        while True:
+            with handle:
+                taken = handle.take_message(subscription.msg_type, True)
+            if taken is None:
+                break
+            received(taken[0])
 
 
 def chain(decode: Callable[[bytes], Any], take: Callable[[Any], None]) -> Callable[[bytes], None]:

@@ -64,7 +64,7 @@ ENDED_EARLY = 26015
 QUIET = 0.2
 """Seconds without a message after which a recorder that is to end has seen everything."""
 LOOK_PERIOD = 0.05
-"""Seconds between two looks for ticks, blocks and what the PLC writes."""
+"""Seconds between two looks for ticks and blocks."""
 
 
 class RecorderNode(PollingNode):
@@ -129,8 +129,7 @@ class RecorderNode(PollingNode):
             self.create_subscription(message_type, topic, received, PLC_INPUT, raw=True)
         for topic, message_type, quality in observed_topics(machine):
             received = self._guarded(partial(self._on_observed, recorded_topic(topic), type_name(message_type)))
-            self.poll_input(message_type, topic, received, BLOCKS if quality is PLC_INPUT else quality)
-        self.input_period = LOOK_PERIOD
+            self.create_subscription(message_type, topic, received, quality, raw=True)
         received = self._guarded(self._on_log)
         self.create_subscription(Log, ROSOUT, received, qos_profile_rosout_default, raw=True)
         RecordingServices(self, lambda: self._recording)
@@ -274,16 +273,13 @@ class RecorderNode(PollingNode):
 
     def _on_observed(self, topic: str, type_name: str, data: bytes) -> None:
         """A PLC may continue to publish when the run has ended, so this does not count as a message of the run."""
-        self._keep_raw(topic, type_name, data, self.arrived_ns)
-
-    def _keep_raw(self, topic: str, type_name: str, data: bytes, arrived_ns: int) -> None:
-        stamp_ns = self._tick_ns if self._free_run else arrived_ns
+        stamp_ns = self._tick_ns if self._free_run else time.time_ns()
         self._keep(lambda sink: sink.raw(topic, type_name, data, stamp_ns))
 
     def _on_log(self, data: bytes) -> None:
         """The topic is one for all namespaces; messages of nodes of other namespaces are left out."""
         if _namespace(deserialize_message(data, Log).name) == _namespace(self.get_logger().name):
-            self._keep_raw(ROSOUT, type_name(Log), data, time.time_ns())
+            self._on_observed(ROSOUT, type_name(Log), data)
 
     def _single(self, record: Callable[[Sink], None]) -> None:
         self._heard = time.monotonic()
