@@ -138,9 +138,13 @@ class Watch:
 
     def _find_processes(self) -> dict[str, psutil.Process]:
         own = psutil.Process()
-        family = own.children(recursive=True)
-        nodes = [child for child in family if any(word.startswith("cnc_ptp.nodes.") for word in words_of(child))]
-        return {node_name(words_of(child)): child for child in nodes} | {self._own: own}
+        return {node_name(words_of(child)): child for child in nodes_of(own)} | {self._own: own}
+
+
+def nodes_of(run: psutil.Process) -> list[psutil.Process]:
+    """The node processes of a run."""
+    family = run.children(recursive=True)
+    return [child for child in family if any(word.startswith("cnc_ptp.nodes.") for word in words_of(child))]
 
 
 def words_of(process: psutil.Process) -> list[str]:

@@ -8,10 +8,11 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass, field
+from itertools import pairwise
 from math import nan
 from multiprocessing import get_context
 from pathlib import Path
@@ -20,9 +21,9 @@ from typing import Any
 
 import psutil
 
+from bench import graph_run
 from bench.figures import Effort, Figure, ShowProgress
 from bench.graph import missing_samples
-from bench.graph_run import words_of
 from bench.jobs import MACHINE
 
 CALLS = 200
@@ -30,8 +31,8 @@ FLOODED = ("x", "y", "z", "channel")
 PERIOD = 0.001
 LEAST_RATE = 0.999 / PERIOD
 """1/s: the sender ends within the last period, so that it is never quite 1 kHz."""
-WARM_UP = 1000
-"""Messages on each topic before the memory is read: buffers of DDS have grown then."""
+WARM_UP = 15.0
+"""Seconds of messages before the memory is read: what keeps the last 1000 commands of each unit has them then."""
 PAUSE = 0.0537
 """Seconds between two calls: beats against the blocks, so that calls come at any moment of a block."""
 SETTLING = 0.3
@@ -52,8 +53,8 @@ class PlcRun:
     largest_lag: float = 0.0
     newest_won: int = 0
     """Topics whose last value has won."""
-    bridge_growth_mb: float = 0.0
-    others_growth_mb: float = 0.0
+    growth_mb: list[dict[str, float]] = field(default_factory=list)
+    """Memory that each process has gained in the first and in the second half of the messages, without the warm-up."""
     lost: float = nan
     """Blocks, as the run tells at its end."""
     missing: int = 0
@@ -81,9 +82,11 @@ def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
     yield Figure("blocks lost", run.lost, "", goal=0.0, at_most=True)
     yield Figure("samples missing in the recording", run.missing, "", goal=0.0, at_most=True)
     yield Figure("topics whose newest value has won", run.newest_won, "", goal=len(FLOODED))
-    memory = "memory that the bridge has gained meanwhile (PSS)"
-    yield Figure(memory, run.bridge_growth_mb, "MB", goal=1.0, at_most=True)
-    yield Figure("the same, all other processes of the run together", run.others_growth_mb, "MB")
+    first, second = run.growth_mb
+    yield Figure("memory that all processes have gained in the first half (USS)", sum(first.values()), "MB")
+    yield Figure("in the second half", sum(second.values()), "MB")
+    for name, gained in second.items():
+        yield Figure(f"  {name}", gained, "MB", goal=1.0, at_most=True)
 
 
 def p99(values: Sequence[float]) -> float:
@@ -128,32 +131,37 @@ def session(plc: Plc, graph: psutil.Process, calls: int, seconds: float) -> PlcR
 
 def flood(plc: Plc, graph: psutil.Process, seconds: float, run: PlcRun) -> None:
     """One message a millisecond on each topic, by a process that does nothing else; the last value must hold."""
-    family = [graph, *graph.children(recursive=True)]
-    bridge = next(each for each in family if "cnc_ptp.nodes.plc_bridge" in words_of(each))
-    run.sent = round(seconds / PERIOD)
+    nodes = {graph_run.node_name(graph_run.words_of(each)): each for each in graph_run.nodes_of(graph)}
+    family = {**nodes, graph_run.SUPERVISOR: graph}
+    run.sent = round((WARM_UP + seconds) / PERIOD)
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as sender:
-        plc.result(sender.submit(send, WARM_UP), PATIENCE)
-        before = {each: memory_mb(each) for each in family}
         flooding = sender.submit(send, run.sent)
+        plc.pause(WARM_UP)
+        used = [memory_of(family)]
+        for _ in range(2):
+            plc.pause(0.5 * seconds)
+            used.append(memory_of(family))
         run.seconds, run.core_seconds, run.largest_lag, last = plc.result(flooding, 10.0 * seconds + PATIENCE)
-    gained = {each: memory_mb(each) - before[each] for each in family}
-    run.bridge_growth_mb = gained.pop(bridge)
-    run.others_growth_mb = sum(gained.values())
+    run.growth_mb = [{name: now[name] - before[name] for name in family} for before, now in pairwise(used)]
     with suppress(TimeoutError):  # a value that was lost is a figure, too
         plc.wait(lambda: all(plc.override_of(unit) == last for unit in FLOODED))
     plc.pause(SETTLING)
     run.newest_won = sum(plc.override_of(unit) == last for unit in FLOODED)
 
 
-def memory_mb(process: psutil.Process) -> float:
-    return float(process.memory_full_info().pss) / 1e6
+def memory_of(family: Mapping[str, psutil.Process]) -> dict[str, float]:
+    """MB of each process that it shares with no other: what they share is divided by their number in PSS, which grows
+    when the sender ends.
+    """
+    return {name: float(each.memory_full_info().uss) / 1e6 for name, each in family.items()}
 
 
 def send(messages: int) -> tuple[float, float, float, float]:
     """In its own process: seconds that so many messages on each topic took, those of a core, the largest delay of one,
     and the last value.
 
-    They are serialised before, so that what is measured is the machine and not a client in Python.
+    They are serialised before, so that what is measured is the machine and not a client in Python; and the sender has
+    the priority that the nodes have: a PLC has a processor of its own.
     """
     import rclpy
     from rclpy.serialization import serialize_message
@@ -170,6 +178,7 @@ def send(messages: int) -> tuple[float, float, float, float]:
     texts = [serialize_message(msg.Override(valid=True, percent=percent)) for percent in percents]
     while not all(writer.get_subscription_count() for writer in writers):
         time.sleep(0.01)
+    process.take_priority()
     begin, of_core, lag = time.monotonic(), time.process_time(), 0.0
     for number in range(messages):
         for writer in writers:

@@ -1,4 +1,4 @@
-"""Output of the M, S, T and D functions of an NC block to spindles and PLC, and the waits of the path for them.
+"""Output of the M, S, T, D and H functions of an NC block to spindles and PLC, and the waits of the path for them.
 
 Synchronisation types: TF5200 spindle 2.5. Before the motion go all types but MNS_SNS (after it) and MNE_SNS (with the
 measuring event). The path waits before the motion for MVS_SVS, at the block's end for MVS_SNS, MNS_SNS and MNE_SNS,
@@ -181,6 +181,8 @@ class FunctionOutput:
                 return self.spindles.synchronisation(function)
             case AuxiliaryFunction("M", number):
                 return self._channel.m_functions[number]
+            case AuxiliaryFunction("H", number):
+                return self._channel.h_functions.get(number, Synchronisation.MOS)
         return Synchronisation.MOS
 
     def _add(self, function: Function, block: CanonicalBlock, outgoing: Outgoing) -> None:

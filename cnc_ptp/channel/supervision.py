@@ -95,7 +95,8 @@ class Supervision:
         request = self._sequence.handshake.overdue(cycle, limit) if limit else None
         if request is None:
             return None
-        function = f"{request.kind}{request.number:02d}" if request.kind == "M" else request.kind
+        numbers = {"M": f"{request.number:02d}", "H": f"{request.number}"}
+        function = f"{request.kind}{numbers.get(request.kind, '')}"
         what = f"{function}{f' of spindle {request.spindle}' if request.spindle else ''} in line {request.line}"
         waited = f"request {request.id} ({what}) within {seconds:g} s (P-MACH-00060)"
         return Finding(NOT_ACKNOWLEDGED, f"the PLC has not acknowledged {waited}", {"patience": seconds})

@@ -21,10 +21,11 @@ IT_CONTINUES = "it continues"
 
 
 def check_seconds(where: str, name: str, value: float | None, effect: str, *, finite: bool = False) -> None:
-    """Raises CncError 22001 for a time that is no number, or has no end where it must have one."""
-    if value is None or isfinite(value) or (isinf(value) and not finite):
+    """Raises CncError 22001 for a time that is no number, or has no end or is below 0 where it must pass."""
+    if value is None or (isfinite(value) and (value >= 0.0 or not finite)) or (isinf(value) and not finite):
         return
-    reason = f"{name} = {value} is not {'finite' if finite else 'a number'}"
+    wanted = "not finite" if finite else "not a number"
+    reason = f"{name} = {value} is {'below 0' if finite and isfinite(value) else wanted}"
     raise CncError(BAD_ARGUMENT, reason, effect, where=f"{where} refused")
 
 

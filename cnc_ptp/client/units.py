@@ -99,7 +99,7 @@ class Plc(PlcCommands):
     """The PLC of the machine."""
 
     def on_handshake(self, callback: Callable[[HandshakeRequest], object] | None) -> None:
-        """`callback(request)` gets the M, S, T and D functions of all channels that come from now on.
+        """`callback(request)` gets the M, S, T, D and H functions of all channels that come from now on.
 
         It is called while this client waits. A request that needs one is acknowledged when it returns True, otherwise
         the channel waits for `acknowledge(request.id)`. None: they are acknowledged automatically again.

@@ -28,7 +28,7 @@ from cnc_ptp.protocol.commands import COMMANDS
 class ChannelNode(UnitNode):
     """UnitNode of a channel.
 
-    Publishes besides: /<channel>/handshake (HandshakeRequest) for M, S, T and D functions; /<channel>/offsets
+    Publishes besides: /<channel>/handshake (HandshakeRequest) for M, S, T, D and H functions; /<channel>/offsets
     (ChannelOffsets) and /<channel>/program (ProgramState) when they change.
     Action: /<channel>/run_program (RunProgram); cancel = reset.
     """

@@ -10,7 +10,7 @@ from mcap.writer import MCAP0_MAGIC
 
 from cnc_ptp.recording.bag import RECORD
 from cnc_ptp.recording.mcap_chunks import McapRecords, MessageRun, RawRecord
-from cnc_ptp.recording.mcap_file import METADATA, MISSING, RECORD_PREFIX, Contents, McapFile, count_chunk
+from cnc_ptp.recording.mcap_file import METADATA, MISSING, RECORD_PREFIX, Contents, McapFile, bytes_of, count_chunk
 from cnc_ptp.recording.parts import describe_folder, numbered_parts
 
 
@@ -105,19 +105,18 @@ class _Survey:
         messages = sum(self._count(item) for item in self._records.in_chunk(record))
         length = RECORD_PREFIX.size + len(record.body)
         first, last = chunk.message_start_time, chunk.message_end_time
-        contents.chunk_indexes.append(
-            ChunkIndex(
-                chunk_length=length,
-                chunk_start_offset=record.offset,
-                compression=chunk.compression,
-                compressed_size=len(chunk.data),
-                message_end_time=last,
-                message_index_length=end - record.offset - length,
-                message_index_offsets=self._index_offsets,
-                message_start_time=first,
-                uncompressed_size=chunk.uncompressed_size,
-            )
+        index = ChunkIndex(
+            chunk_length=length,
+            chunk_start_offset=record.offset,
+            compression=chunk.compression,
+            compressed_size=len(chunk.data),
+            message_end_time=last,
+            message_index_length=end - record.offset - length,
+            message_index_offsets=self._index_offsets,
+            message_start_time=first,
+            uncompressed_size=chunk.uncompressed_size,
         )
+        contents.chunk_indexes += bytes_of(index)
         count_chunk(contents.statistics, messages, first, last)
         self._last, self._index_offsets = None, {}
 

@@ -79,7 +79,8 @@ class Contents:
     crc: int = 0
     schemas: list[Schema] = field(default_factory=list)
     channels: list[Channel] = field(default_factory=list)
-    chunk_indexes: list[ChunkIndex] = field(default_factory=list)
+    chunk_indexes: bytearray = field(default_factory=bytearray)
+    """Records as the summary has them: a recording of a day has a million."""
     attachment_indexes: list[AttachmentIndex] = field(default_factory=list)
     metadata_indexes: list[MetadataIndex] = field(default_factory=list)
 
@@ -236,19 +237,18 @@ class McapFile:
             index_offsets[channel_id] = self._offset
             self._write(_message_index(channel_id, entries))
         self._flush()
-        self._chunk_indexes.append(
-            ChunkIndex(
-                chunk_length=end - start,
-                chunk_start_offset=start,
-                compression=self._compression,
-                compressed_size=len(compressed),
-                message_end_time=last,
-                message_index_length=self._offset - end,
-                message_index_offsets=index_offsets,
-                message_start_time=first,
-                uncompressed_size=chunk.size,
-            )
+        index = ChunkIndex(
+            chunk_length=end - start,
+            chunk_start_offset=start,
+            compression=self._compression,
+            compressed_size=len(compressed),
+            message_end_time=last,
+            message_index_length=self._offset - end,
+            message_index_offsets=index_offsets,
+            message_start_time=first,
+            uncompressed_size=chunk.size,
         )
+        self._chunk_indexes += bytes_of(index)
         count_chunk(self.statistics, chunk.message_count, first, last)
 
     def close(self) -> None:
@@ -301,37 +301,31 @@ class McapFile:
         self.statistics.schema_count = len(self._schemas)
         self.statistics.channel_count = len(self._channels)
         start = self._offset
-        builder = RecordBuilder()
-        offsets: list[SummaryOffset] = []
-        groups: list[tuple[Opcode, list[McapRecord]]] = [
-            (Opcode.SCHEMA, [*self._schemas]),
-            (Opcode.CHANNEL, [*self._channels]),
-            (Opcode.STATISTICS, [self.statistics]),
-            (Opcode.CHUNK_INDEX, [*self._chunk_indexes]),
-            (Opcode.ATTACHMENT_INDEX, [*self._attachment_indexes]),
-            (Opcode.METADATA_INDEX, [*self._metadata_indexes]),
+        groups: list[tuple[Opcode, bytes | bytearray]] = [
+            (Opcode.SCHEMA, bytes_of(*self._schemas)),
+            (Opcode.CHANNEL, bytes_of(*self._channels)),
+            (Opcode.STATISTICS, bytes_of(self.statistics)),
+            (Opcode.CHUNK_INDEX, self._chunk_indexes),
+            (Opcode.ATTACHMENT_INDEX, bytes_of(*self._attachment_indexes)),
+            (Opcode.METADATA_INDEX, bytes_of(*self._metadata_indexes)),
         ]
+        summary = bytearray()
+        offsets: list[SummaryOffset] = []
         for opcode, records in groups:
-            begin = builder.count
-            for record in records:
-                record.write(builder)
-            offsets.append(SummaryOffset(opcode, start + begin, builder.count - begin))
-        offset_start = start + builder.count
-        for offset in offsets:
-            if offset.group_length:
-                offset.write(builder)
-        summary = _content(builder)
+            if records:
+                offsets.append(SummaryOffset(opcode, start + len(summary), len(records)))
+                summary += records
+        offset_start = start + len(summary)
+        summary += bytes_of(*offsets)
         crc = zlib.crc32(struct.pack("<BQQQ", Opcode.FOOTER, 20, start, offset_start), zlib.crc32(summary))
         self._write(summary)
         self._record(Footer(start, offset_start, crc))
         self._write(MCAP0_MAGIC)
 
     def _record(self, record: McapRecord) -> None:
-        builder = RecordBuilder()
-        record.write(builder)
-        self._write(_content(builder))
+        self._write(bytes_of(record))
 
-    def _write(self, data: bytes) -> None:
+    def _write(self, data: bytes | bytearray) -> None:
         if self._failure is not None:
             raise self._failure
         self._pending += data
@@ -386,9 +380,7 @@ class _OpenChunk:
         self.indexes: dict[int, list[npt.NDArray[np.void]]] = {}
 
     def add_record(self, record: McapRecord) -> None:
-        builder = RecordBuilder()
-        record.write(builder)
-        data = _content(builder)
+        data = bytes_of(record)
         self.parts.append(data)
         self.size += len(data)
 
@@ -426,9 +418,17 @@ def _message_index(channel_id: int, runs: list[npt.NDArray[np.void]]) -> bytes:
     builder.write4(entries.nbytes)
     builder.write(entries.tobytes())
     builder.finish_record()  # type: ignore[no-untyped-call]
-    return _content(builder)
+    return _contents(builder)
 
 
-def _content(builder: RecordBuilder) -> bytes:
-    content: bytes = builder.end()  # type: ignore[no-untyped-call]
-    return content
+def bytes_of(*records: McapRecord) -> bytes:
+    """The records as they stand in a file."""
+    builder = RecordBuilder()
+    for record in records:
+        record.write(builder)
+    return _contents(builder)
+
+
+def _contents(builder: RecordBuilder) -> bytes:
+    contents: bytes = builder.end()  # type: ignore[no-untyped-call]
+    return contents

@@ -46,21 +46,28 @@ def with_m(machine: MachineParameters = MILL, **types: Synchronisation) -> Machi
 # ---------------------------------------------------------------- all types
 
 
+def with_h(number: int, kind: Synchronisation) -> MachineParameters:
+    """The mill, with an H function of this type."""
+    channel = MILL.channels["channel"]
+    return replace(MILL, channels={"channel": replace(channel, h_functions={number: kind})})
+
+
 @pytest.mark.parametrize("acknowledged_at", [0.95, 0.953, 1.2])
+@pytest.mark.parametrize("function", ["M03 S600", "H5"])
 @pytest.mark.parametrize(
     ("kind", "first_held"),
     [(NO_SYNCH, 4), (MOS, 4), (MVS_SVS, 0), (MVS_SNS, 1), (MNS_SNS, 1), (MNE_SNS, 1), (MVS_SLM, 2), (MVS_SLP, 3)],
 )
 def test_the_path_moves_in_the_block_after_the_acknowledgement(
-    kind: Synchronisation, first_held: int, acknowledged_at: float
+    kind: Synchronisation, first_held: int, function: str, acknowledged_at: float
 ) -> None:
     """Of four motions of 10 mm, two in rapid traverse, one machining and one after #EXPL SYN, which is the first that
     waits for a PLC that acknowledges late; the ones before are finished, and no setpoint moves until then.
     """
     bench = MachineBench(
-        "%P\nG00 X10 M03 S600\nX20\nG01 X30 F9000\n#EXPL SYN\nG00 X40\nM30",
+        f"%P\nG00 X10 {function}\nX20\nG01 X30 F9000\n#EXPL SYN\nG00 X40\nM30",
         MANUAL + f"- {{at: {acknowledged_at}, to: plc, do: acknowledge, id: 1}}",
-        machine=mill(m3=kind | PLC_INFO),
+        machine=with_h(5, kind) if function == "H5" else mill(m3=kind | PLC_INFO),
     ).run()
     acknowledgement = told_at(bench, "acknowledge", "plc" if first_held == 4 else "channel")
     x = bench.column("x", "set_position")
@@ -73,6 +80,29 @@ def test_the_path_moves_in_the_block_after_the_acknowledgement(
     assert x[begin] == pytest.approx(still) and begin <= acknowledgement - 100 * (first_held > 0)
     assert set(x[begin : acknowledgement + 1]) == {x[begin]}
     assert x[acknowledgement + 1] > x[acknowledgement]
+
+
+@pytest.mark.parametrize(("kind", "sent"), [(NO_SYNCH, [6]), (MOS, [5, 6]), (MVS_SVS, [5, 6])])
+def test_what_an_h_function_sends(kind: Synchronisation, sent: list[int]) -> None:
+    """One without an entry is sent, and the path does not wait for it."""
+    bench = run("H5=7\nG01 X1 F3000 H6\nM30", with_h(5, kind))
+    assert bench.errors() == [] and bench.position("x") == 1.0
+    assert [(each.kind, each.number) for each in requests(bench)] == [("H", number) for number in sent]
+    assert [each.acknowledge_needed for each in requests(bench)] == [kind is MVS_SVS] * (len(sent) - 1) + [False]
+
+
+def test_an_h_function_that_is_never_acknowledged_aborts_the_program() -> None:
+    bench = MachineBench(
+        "%P\nG00 X1\nH5\nX2\nM30",
+        MANUAL,
+        machine=replace(with_h(5, MVS_SVS), handshake_timeout_ms=500),
+        end_when_idle=False,
+    ).run(3.0)
+    assert bench.errors() == [
+        "P-ERR-22016 channel channel: the PLC has not acknowledged request 1 (H5 in line 3) within 0.5 s "
+        "(P-MACH-00060); the path stops on its ramp and the program is aborted"
+    ]
+    assert bench.position("x") == 1.0
 
 
 # ---------------------------------------------------------------- late synchronisation

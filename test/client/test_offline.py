@@ -221,6 +221,7 @@ def test_a_wait_has_a_timeout_of_machine_time(m: Machine) -> None:
             lambda m: m.wait_until(lambda: False, timeout=nan),
             "wait_until refused: timeout = nan is not a number; no time has passed",
         ),
+        (lambda m: m.run_for(-1), "run_for refused: seconds = -1 is below 0; no time has passed"),
         (
             lambda m: m.x.move_absolute(100).wait(timeout=nan),
             "axis x: move_absolute: wait refused: timeout = nan is not a number; it continues",

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import pytest
 import rclpy
 from graph_support import PTP
+from rclpy.serialization import serialize_message
 
 from cnc_ptp import msg, srv
 from cnc_ptp.machine.wiring import build_unit
@@ -27,7 +28,7 @@ class Bridge:
         self.answers = []
         self.couplings = CouplingServices(self, self.unit, ["x", "y"])
 
-    def create_subscription(self, _type, _topic, record, _quality):
+    def poll(self, _type, _topic, record, _quality):
         self.record = record
 
     def create_timer(self, _period, watch):
@@ -50,7 +51,7 @@ class Bridge:
         return {command.id: command for command in self.unit.step(CycleTick(cycle, 10), {}).commands}
 
     def carried_out(self, **fields):
-        self.record(msg.CommandRecord(**fields))
+        self.record(serialize_message(msg.CommandRecord(**fields)))
 
     def told(self):
         answers, self.answers = self.answers, []

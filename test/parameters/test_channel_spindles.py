@@ -158,6 +158,11 @@ WRONG = {
         "P-ERR-25009 m.yaml:8:25: channel list, P-CHAN-00045 spindel[0].m3_synch of /ch: "
         "value MVS_SVS | MVS_SLM | PLC_INFO has 2 synchronisation types, one is possible (PLC_INFO may be added)",
     ),
+    "two synchronisation types of an H function": (
+        (TWO, "h_synch.5: MVS_SVS | MOS"),
+        "P-ERR-25009 m.yaml:8:16: channel list, P-CHAN-00027 h_synch[5] of /ch: "
+        "value MOS | MVS_SVS has 2 synchronisation types, one is possible (PLC_INFO may be added)",
+    ),
     "gear without a record": (
         (TWO, "main_spindle_gear_change: 1", "spindel.1.range_table.3: {min_speed: 1, max_speed: 2}"),
         "P-ERR-25009 m.yaml:9:56: channel list, P-CHAN-00055 spindel[1].range_table[3].max_speed of /ch: "

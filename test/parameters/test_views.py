@@ -253,6 +253,7 @@ def test_channel_of_defaults_has_everything() -> None:
     )
     assert view.main_spindle == "S"
     assert view.m_functions == dict.fromkeys((0, 1, 2, 3, 4, 5, 17, 19, 29, 30), NONE)
+    assert view.h_functions == {}
     assert (view.max_override_percent, view.circle_center_tolerance, view.circle_center_ratio) == (100.0, 2.0, 0.05)
 
 
@@ -263,6 +264,7 @@ def test_channel_with_lists() -> None:
         "spindel.0: {log_achs_nr: 4, bezeichnung: S1, m3_synch: 0x00020002}",
         "spindel.1: {log_achs_nr: 5, m19_synch: MNS_SNS}",
         "m_synch: {8: MVS_SVS, 9: '0x8', 10: NOT_VALID, 3: PLC_INFO|MOS}",
+        "h_synch: {7: MVS_SNS, 8: '0x0', 9: NOT_VALID}",
         "max_vb_override: 1500, mittelpkt_diff: 1000, mittelpkt_faktor: 5",
     )
     plc = Synchronisation.PLC_INFO | Synchronisation.MVS_SVS
@@ -276,6 +278,7 @@ def test_channel_with_lists() -> None:
     assert view.m_functions[9] is Synchronisation.MNS_SNS
     assert view.m_functions[3] == Synchronisation.MOS | Synchronisation.PLC_INFO
     assert 10 not in view.m_functions
+    assert view.h_functions == {7: Synchronisation.MVS_SNS, 8: NONE}
     assert (view.max_override_percent, view.circle_center_tolerance, view.circle_center_ratio) == (150.0, 0.1, 0.005)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import nan
 from typing import Any
 
 import pytest
@@ -408,6 +409,30 @@ def test_mc_set_override_gives_a_factor_when_it_changes_and_again_after_enable()
     assert override.error_id == 23005 and not override.busy
     override(True, 0.7)
     assert override.error and len(unit.given) == 2  # until enable has fallen
+
+
+def test_a_factor_that_is_no_number_is_refused_once() -> None:
+    unit = FakeUnit()
+    override = MC_SetOverride(unit)
+    for _ in range(3):
+        override(True, nan)
+    assert len(unit.given) == 1
+    unit.last.tells = REFUSED
+    override(True, nan)
+    assert override.error and not override.enabled and len(unit.given) == 1
+
+
+@pytest.mark.parametrize("denominator", [0, -0.0])
+def test_a_gear_ratio_over_0_is_refused_by_the_block(denominator: float) -> None:
+    unit = FakeUnit()
+    gear = MC_GearIn(unit)
+    gear(True, "y", 1.0, denominator)
+    assert (gear.busy, gear.error, gear.error_id, unit.given) == (False, True, 22001, [])
+    reason = f"ratio_denominator = {denominator} must be different from 0"
+    assert gear.error_text == f"axis x: MC_GearIn refused: {reason}; nothing was changed"
+    gear(False)
+    gear(True, "y", 1.0, 2.0)
+    assert unit.last.arguments == {"master": "y", "factor": 0.5}
 
 
 def test_read_blocks() -> None:

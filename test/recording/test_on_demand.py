@@ -11,9 +11,9 @@ from cnc_ptp.commands.run.replay import replay_blocks
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.parameters import machine_text
-from cnc_ptp.protocol.blocks import CommandRecord, CycleTick, Event, Severity
+from cnc_ptp.protocol.blocks import CommandRecord, CycleTick, Event, EventValue, Severity, json_of
 from cnc_ptp.recording.mcap_file import NOT_WRITTEN
-from cnc_ptp.recording.memory import OBJECT, History, LastSeconds
+from cnc_ptp.recording.memory import BATCH, OBJECT, History, LastSeconds
 from cnc_ptp.recording.on_demand import OnDemand, Snapshots
 from cnc_ptp.recording.origin import RECORD_WHEN, WITHOUT
 from cnc_ptp.recording.reader import read_recording
@@ -321,6 +321,40 @@ def test_memory_is_bounded():
     for cycle in range(100):
         history.add(Event(cycle, "x", 0, 0, ""))
     assert (history.forgotten, len(history.before(95))) == (89, 5)
+
+
+def test_what_is_kept_compressed_comes_back_as_it_was():
+    """More than a batch, of both kinds, with all fields."""
+    records = []
+    for cycle in range(0, 5 * BATCH, 2):
+        values = {"limit": 1.5, "unit": "mm"} if cycle % 4 else {}
+        records.append(CommandRecord(cycle, "x", "stop", "{}", bool(values), 7, "a text", cycle, values, 3, 23073))
+        records.append(Event(cycle, "s", Severity.ERROR, 22054, "°", 4, [EventValue("a", cycle / 3, "mm", "limit")]))
+    history = History()
+    for record in records:
+        history.add(record)
+    kept = history.before(5 * BATCH - 2)
+    assert kept == records[:-2]
+    for name in ("arguments", "values", "job", "warning_id"):
+        assert [getattr(each, name) for each in kept[::2]] == [getattr(each, name) for each in records[:-2:2]]
+
+
+def test_overrides_in_each_block_take_little_memory():
+    """Four values that change in each block."""
+    history = History()
+    for cycle in range(0, 100_000, 10):
+        for unit in ("x", "y", "z", "channel"):
+            percent = 50.0 + (cycle * 7 + len(unit)) % 41
+            history.add(CommandRecord(cycle, unit, "set_override", json_of({"percent": percent}), True, 0, "", cycle))
+    assert history._size < BATCH * 2 * OBJECT + 40_000 * 20
+
+
+def test_what_does_not_fit_any_longer_is_forgotten_batch_by_batch():
+    history = History(BATCH * 2 * OBJECT)
+    for cycle in range(100 * BATCH):
+        history.add(Event(cycle, "x", 0, 0, f"{(cycle * 2654435761) % 2**32:032b}" * 4))
+    assert history.forgotten > 0 and history.forgotten % BATCH == BATCH - 1
+    assert [each.cycle for each in history.before(100 * BATCH)] == [*range(history.forgotten + 1, 100 * BATCH)]
 
 
 def test_parts_are_written_on_demand_too(tmp_path):

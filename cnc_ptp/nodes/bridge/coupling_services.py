@@ -9,6 +9,7 @@ from functools import partial
 from typing import Any
 
 from rclpy.qos import QoSProfile, QoSReliabilityPolicy
+from rclpy.serialization import deserialize_message
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
@@ -50,7 +51,7 @@ class CouplingServices:
         self._node = node
         self._plc = plc
         self._open: list[Call] = []
-        node.create_subscription(msg.CommandRecord, COMMAND, self._on_record, NEW_RECORDS)
+        node.poll(msg.CommandRecord, COMMAND, self._on_record, NEW_RECORDS)
         node.create_timer(WATCH_PERIOD, self._watch)
         for axis in axes:
             for command, service_type in COUPLING_SERVICES.items():
@@ -93,8 +94,11 @@ class CouplingServices:
         else:
             call.send = partial(send, response, header)
 
-    def _on_record(self, record: msg.CommandRecord) -> None:
+    def _on_record(self, data: bytes) -> None:
         """Ids count per sender, and couplings of axes come from the PLC alone."""
+        if not self._open:
+            return
+        record = deserialize_message(data, msg.CommandRecord)
         for call in self._open:
             asked = call.command
             if asked.id and (asked.id, asked.target, asked.command) == (record.id, record.target, record.command):

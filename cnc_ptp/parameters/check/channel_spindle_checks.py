@@ -20,6 +20,7 @@ from cnc_ptp.parameters.view.channel_members import (
 from cnc_ptp.parameters.view.channel_view import GEAR_M_FUNCTIONS
 
 SYNCHRONISATIONS = (
+    ids.H_SYNCH,
     ids.M_SYNCH,
     ids.SPINDEL_M19_SYNCH,
     ids.SPINDEL_M3_SYNCH,
@@ -27,7 +28,7 @@ SYNCHRONISATIONS = (
     ids.SPINDEL_M5_SYNCH,
     ids.SPINDEL_S_SYNCH,
 )
-"""M functions, M19, M3, M4, M5, S."""
+"""H functions, M functions, M19, M3, M4, M5, S."""
 
 
 def one_synchronisation(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:

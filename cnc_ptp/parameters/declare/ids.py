@@ -159,6 +159,7 @@ CAX_FACE_ID = "P-CHAN-00008"  # cax_face_id
 DEFAULT_AX_NAME_OF_SPINDLE = "P-CHAN-00010"  # default_ax_name_of_spindle
 EINRECHNEN_MIT_T = "P-CHAN-00014"  # einrechnen_mit_t
 GRP_ANZAHL = "P-CHAN-00023"  # grp_anzahl
+H_SYNCH = "P-CHAN-00027"  # h_synch[i]
 ACHSE_LOG_ACHS_NR = "P-CHAN-00035"  # gruppe[i].achse[j].log_achs_nr
 SPINDEL_LOG_ACHS_NR = "P-CHAN-00036"  # spindel[i].log_achs_nr
 PAAR_LOG_ACHS_NR_MASTER = "P-CHAN-00037"  # synchro_data.koppel_gruppe[i].paar[j].log_achs_nr_master

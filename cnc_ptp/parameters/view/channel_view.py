@@ -87,6 +87,8 @@ class ChannelParameters:
     """… and as a fraction of its radius."""
     gear_change: Annotated[bool, ids.MAIN_SPINDLE_GEAR_CHANGE] = False
     """M40 to M45 and S change the gear of the main spindle (P-CHAN-00052)."""
+    h_functions: Mapping[int, Synchronisation] = field(default_factory=dict)
+    """Synchronisation by H number; one that is missing here is MOS."""
     coupled: tuple[tuple[str, str], ...] = ()
     """Coupling group 0: (slave, master) by the name of the spindle (P-CHAN-00037, 00038)."""
     tools: Mapping[int, ToolLimits] = field(default_factory=dict)
@@ -164,6 +166,7 @@ def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet], folder
         spindles=tuple(channel_spindle(channel, entry) for entry in spindles),
         main_spindle=next((entry.name for entry in spindles if entry.number == main), ""),
         m_functions=m_functions(channel),
+        h_functions=listed_functions(channel, "h_synch", ids.H_SYNCH),
         max_override_percent=channel.percent(ids.MAX_VB_OVERRIDE),
         coupled=coupled_spindles(channel, spindles),
         tools=tool_limits(channel, spindles),
@@ -252,8 +255,11 @@ def m_functions(channel: ParameterSet) -> dict[int, Synchronisation]:
     functions = dict.fromkeys(INTERNAL_M_FUNCTIONS, Synchronisation.NO_SYNCH)
     if channel.number(ids.MAIN_SPINDLE_GEAR_CHANGE):
         functions |= dict.fromkeys(GEAR_M_FUNCTIONS, Synchronisation.MVS_SVS)
-    for number in channel.used_indexes("m_synch"):
-        constants = channel.text(ids.M_SYNCH, number)
-        if constants != "NOT_VALID":
-            functions[number] = synchronisation(constants)
+    functions |= listed_functions(channel, "m_synch", ids.M_SYNCH)
     return dict(sorted(functions.items()))
+
+
+def listed_functions(channel: ParameterSet, array: str, number: str) -> dict[int, Synchronisation]:
+    """Synchronisation of the functions that an array names, by number of the function."""
+    constants = {index: channel.text(number, index) for index in channel.used_indexes(array)}
+    return {index: synchronisation(text) for index, text in constants.items() if text != "NOT_VALID"}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import nan
 from typing import Any
 
 from cnc_ptp.plc.plcopen.execute_block import EndlessBlock, ExecuteBlock
@@ -10,6 +11,7 @@ from cnc_ptp.plc.plcopen.faults import CAME_TO_REST, NOT_GRANTED
 from cnc_ptp.plc.plcopen.unit_reference import UnitReference
 from cnc_ptp.protocol.axis_states import AxisStateCode
 from cnc_ptp.protocol.blocks import AxisBlock, SpindleBlock
+from cnc_ptp.protocol.commands import BAD_ARGUMENT
 
 Master = UnitReference | str
 SPEED_BAND = 1e-3
@@ -80,12 +82,14 @@ class MC_GearIn(SlaveBlock):
     ) -> None:
         if not self._rises(execute):
             return
-        factor = ratio_numerator / ratio_denominator if ratio_denominator else ratio_numerator * float("inf")
-        self._ratio = factor
+        self._ratio = ratio_numerator / ratio_denominator if ratio_denominator else nan
         if self.unit.kind == "spindle":
             self._couple("couple", master, factor_num=ratio_numerator, factor_den=ratio_denominator)
+        elif not ratio_denominator:
+            reason = f"ratio_denominator = {ratio_denominator} must be different from 0"
+            self._fail(BAD_ARGUMENT, f"{self._where}: MC_GearIn refused: {reason}; nothing was changed")
         else:
-            self._gear_axis(master, factor)
+            self._gear_axis(master, self._ratio)
 
     def _gear_axis(self, master: Master, factor: float) -> None:
         block, name = self.unit.block, master if isinstance(master, str) else master.name

@@ -55,7 +55,8 @@ class Order:
         self.error_text = ""
 
     def give(self, **arguments: Any) -> None:
-        if arguments == self._arguments:
+        """NaN is one value here: it is refused once, not given again in each cycle."""
+        if repr(arguments) == repr(self._arguments):
             self._look()
             return
         self._arguments = arguments

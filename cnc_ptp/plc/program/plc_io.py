@@ -50,7 +50,7 @@ class PlcIo:
         self.cycle_time = cycle_time
         """Seconds of a cycle."""
         self.functions: tuple[HandshakeRequest, ...] = ()
-        """M, S, T and D functions that the channels have sent with the last block."""
+        """M, S, T, D and H functions that the channels have sent with the last block."""
         self.inputs = MappingProxyType(inputs)
         """Values from outside by name (`set_input`)."""
         self.finished = finished
