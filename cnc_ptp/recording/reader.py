@@ -48,6 +48,13 @@ class TopicInfo:
     last_ns: int = 0
     qos: str = ""
 
+    def add(self, run: MessageRun) -> None:
+        """Counts messages."""
+        times = run.head["log_time"]
+        self.first_ns = int(times.min()) if self.count == 0 else min(self.first_ns, int(times.min()))
+        self.last_ns = max(self.last_ns, int(times.max()))
+        self.count += len(times)
+
 
 class Diagnostic(NamedTuple):
     """One status of a diagnostics message."""
@@ -181,6 +188,22 @@ def read_recording(path: str | Path) -> Recorded:
             reader.take(record)
         reader.end_of_file(records.missing)
     return reader.finish()
+
+
+def topics_of(path: str | Path) -> dict[str, TopicInfo]:
+    """The topics that have messages, piece by piece: nothing of them is kept. Same errors as read_recording."""
+    by_name: dict[str, TopicInfo] = {}
+    for file in files_of(Path(path)):
+        records = McapRecords(file)
+        names = _Names(records, by_name)
+        for record in records:
+            names.take(record)
+            for item in records.in_chunk(record) if record.opcode == Opcode.CHUNK else ():
+                if isinstance(item, MessageRun):
+                    names.topic(item, record).add(item)
+                else:
+                    names.add(item)
+    return {topic: info for topic, info in by_name.items() if info.count}
 
 
 def iter_messages(path: str | Path, topics: Collection[str] | None = None) -> Iterator[RawMessage]:
@@ -329,10 +352,7 @@ class Reader:
 
     def messages(self, run: MessageRun, record: RawRecord) -> None:
         info = self.names.topic(run, record)
-        times = run.head["log_time"]
-        info.first_ns = int(times.min()) if info.count == 0 else min(info.first_ns, int(times.min()))
-        info.last_ns = max(info.last_ns, int(times.max()))
-        info.count += len(times)
+        info.add(run)
         if info.type_name in (*STATE_TYPES, THREAD_STATE, TICK):
             self._fixed(info, run, record)
         elif info.type_name in self._handlers:
