@@ -7,6 +7,7 @@ to its last cycle are there, and a moment later, because commands and events may
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Iterable
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
@@ -31,6 +32,7 @@ NOTHING_KEPT = 26193
 SNAPSHOT_TAKEN = 26194
 SNAPSHOT_FAILED = 26195
 BAD_SECONDS = 26197
+RECORDING_BEGUN = 26220
 LONGEST = 86400.0
 """Seconds that may be asked for."""
 NOT_CHANGED = "nothing was changed"
@@ -195,6 +197,8 @@ class OnDemand:
         self._begin, self._end = begin, math.inf
         for record in self._history.before(begin):
             write_record(self.current, record)
+        text = f"{RECORDER}: recording {file} begins with cycle {begin}"
+        self._publish(Event(begin, RECORDER, Severity.INFO, RECORDING_BEGUN, text))
         return Answer(begin)
 
     def stop(self, done: Done) -> None:
@@ -332,6 +336,12 @@ class OnDemand:
 
     def _cycles(self, seconds: float) -> int:
         return round(seconds * 1e9 / self.stamps.cycle_time_ns)
+
+
+def begun_file(error_id: int, text: str) -> str:
+    """The file or folder of a recording on demand, of the event that it has begun; empty of all other events."""
+    begun = re.fullmatch(rf"{RECORDER}: recording (.+) begins with cycle \d+", text, re.DOTALL)
+    return begun[1] if begun is not None and error_id == RECORDING_BEGUN else ""
 
 
 def without_what(first_cycle: int, forgotten: int = -1) -> dict[str, str]:

@@ -281,6 +281,7 @@ class Reader:
 
     records: RecordReader
     names: _Names
+    _decoders: DecoderFactory
 
     def __init__(self, path: Path) -> None:
         self._by_name: dict[str, TopicInfo] = {}
@@ -288,7 +289,6 @@ class Reader:
         self.recorded = Recorded(path)
         self._layouts: dict[str, Layout] = {}
         self._rows: dict[str, list[npt.NDArray[np.uint8]]] = {}
-        self._decoders = DecoderFactory()
         self._handlers: dict[str, Callable[[int, str, Any], None]] = {
             EVENT: self._event,
             COMMAND: self._command,
@@ -300,6 +300,7 @@ class Reader:
         """The records that come are those of another file."""
         self.records = records
         self.names = _Names(records, self._by_name)
+        self._decoders = DecoderFactory()  # it knows schemas by their number in the file
 
     def end_of_file(self, missing: str) -> None:
         """`missing`: what the file lacks, if anything."""
