@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Iterable
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -171,11 +171,11 @@ class OnDemand:
         """`now` in s of any steady clock."""
         if self.current is not None:
             self.current.flush_if_due(now)
-        self._carry_out(now)
+        self.carry_out(now)
 
     def close(self) -> None:
         """Carries out what was asked for, with what is there, and closes the present recording."""
-        self._carry_out(math.inf)
+        self.carry_out(math.inf)
         try:
             if self.current is not None:
                 self.current.close()
@@ -265,11 +265,21 @@ class OnDemand:
 
         self._jobs.append(Job(end, carry_out, done))
 
-    def _carry_out(self, now: float) -> None:
+    def carry_out(self, now: float) -> None:
+        """What is due of what was asked for; `now` as of flush_if_due."""
         for job in [*self._jobs]:
             if self._is_due(job, now):
                 self._jobs.remove(job)
                 self._writing.append((job.carry_out(), job.done))
+        self._answer_written()
+
+    def settle(self, now: float) -> None:
+        """Everything has come up to now: carries out at once what waits for no later cycle, to its end."""
+        for job in self._jobs:
+            if job.end <= self._newest:
+                job.settled_at = now
+        self.carry_out(now)
+        wait([future for future, _ in self._writing])
         self._answer_written()
 
     def _is_due(self, job: Job, now: float) -> bool:
