@@ -352,7 +352,7 @@ def test_a_recording_on_demand_that_was_cut_anywhere(tmp_path):
         counts.append(recover(cut, saved).messages)
         assert sum(1 for _ in iter_messages(cut)) == counts[-1]
         if counts[-1]:
-            assert verify(read_recording(saved), replay_blocks).equal
+            assert not verify(read_recording(saved), replay_blocks).differences
         close_cut(cut)
         assert sum(1 for _ in iter_messages(cut)) == counts[-1]
     assert counts == sorted(counts) and counts[-1] == whole and len({*counts}) > 3
