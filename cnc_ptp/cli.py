@@ -311,11 +311,11 @@ def export_command(**options: Any) -> None:
 
 @main.command("recover")
 @RECORDING
-@click.option("-o", "--output", required=True, type=click.Path(dir_okay=False), help="MCAP file to write.")
+@click.option("-o", "--output", required=True, type=click.Path(), help="MCAP file to write; of parts a folder.")
 def recover_command(**options: Any) -> None:
     """Save what is whole of a damaged or cut recording in a new file.
 
-    Says what is lost. The recording itself is unchanged.
+    The folder of a recording in parts becomes a folder of parts. Says what is lost. The recording itself is unchanged.
     """
     from cnc_ptp.commands.look.recover import recover_file
 

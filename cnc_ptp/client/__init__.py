@@ -6,6 +6,7 @@ The function blocks of PLCopen take its axes and spindles: `MC_MoveAbsolute(m.x)
 from cnc_ptp.client.faults import UnknownUnit
 from cnc_ptp.client.job import Answer, Job, ProgramJob
 from cnc_ptp.client.machine import Machine
+from cnc_ptp.client.recorder import Recorder
 from cnc_ptp.client.several_jobs import TrajectoryJob
 from cnc_ptp.client.states import AxisState, ChannelState, SpindleState
 from cnc_ptp.client.stream import Stream
@@ -43,6 +44,7 @@ from cnc_ptp.protocol.blocks import Event, HandshakeRequest
 from cnc_ptp.protocol.channel_states import ChannelStateCode
 from cnc_ptp.protocol.jobs import JobStatus
 from cnc_ptp.protocol.spindle_states import SpindleBit, SpindleMode
+from cnc_ptp.recording.recorder_options import RecorderOptions
 
 __all__ = [
     "Answer",
@@ -85,6 +87,8 @@ __all__ = [
     "Machine",
     "Plc",
     "ProgramJob",
+    "Recorder",
+    "RecorderOptions",
     "Spindle",
     "SpindleBit",
     "SpindleMode",

@@ -17,6 +17,7 @@ ABORTED = 26173
 NOTHING_MOVES = 26174
 UNSEEN = 26175
 NOT_STARTED = 26176
+NO_RECORDER = 26221
 IT_CONTINUES = "it continues"
 
 
@@ -37,6 +38,11 @@ def unknown_unit(name: str, known: Iterable[str], what: str = "unit") -> Unknown
     names = [*known]
     reason = f"the machine has no {what} '{name}'{nearest_name(name, names)}"
     return UnknownUnit(UNKNOWN_UNIT, reason, f"nothing was sent. Known: {', '.join(names) or 'none'}")
+
+
+def no_recorder(command: str) -> CncError:
+    remedy = "nothing was changed, give record or recorder to Machine.start or Machine.offline"
+    return CncError(NO_RECORDER, "this machine has no recorder", remedy, where=f"recorder: {command} refused")
 
 
 def error_of(number: int, text: str, values: Mapping[str, Value]) -> CncError:

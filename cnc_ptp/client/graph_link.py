@@ -42,6 +42,7 @@ from cnc_ptp.protocol.blocks import CommandRecord, CycleBlock, Event, read_value
 from cnc_ptp.protocol.jobs import JobStatus
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.recording.overwriting import check_recording
+from cnc_ptp.recording.recorder_options import RecorderOptions, check_recorder
 from cnc_ptp.wire.block_codec import codec_of
 
 FROM_NOW_ON = QoSProfile(depth=1000, reliability=QoSReliabilityPolicy.RELIABLE)
@@ -151,6 +152,11 @@ class GraphLink(Link):
             self._asked[ticket] = self._thread.call(partial(self._jog, unit, float(arguments["velocity"])))
         else:
             self._asked[ticket] = self._thread.call(partial(ask, unit, command, arguments))
+        return ticket
+
+    def give_recorder(self, command: str, arguments: Mapping[str, Any]) -> int:
+        ticket = next(self._tickets)
+        self._asked[ticket] = self._thread.call(partial(ask_recorder, command, arguments))
         return ticket
 
     def answer(self, ticket: int) -> Reply | None:
@@ -316,6 +322,13 @@ def ask(unit: str, command: str, arguments: Mapping[str, Any], client: MachineCl
     return Reply(answer.cycle, 0 if answer.accepted else answer.error_id, answer.message, values, answer.job)
 
 
+def ask_recorder(command: str, arguments: Mapping[str, Any], client: MachineClient) -> Reply:
+    """The answer of the recorder. Raises CncError 26136."""
+    answer = client.ask_recorder(command, arguments)
+    values = read_values(answer.values_json)
+    return Reply(answer.cycle, 0 if answer.accepted else answer.error_id, answer.message, values, 0)
+
+
 def given_set(unit: str, kind: str, values: Mapping[str, Any]) -> ParameterSet:
     """The parameters of a unit as its node has told them."""
     place = Place(f"node /{unit}", 0, 0)
@@ -332,6 +345,8 @@ def start_graph(options: Mapping[str, Any], *, domain: int | None, namespace: st
     """The link to a graph that it starts. Raises as Machine.start."""
     check_recording(options.get("record"), machine_file=options["machine"], scenario=options.get("scenario"))
     parameters = read_machine(options["machine"])
+    if (recorder := options.get("recorder")) is not None:
+        check_recorder(RecorderOptions(**recorder), options.get("record"), unit_kinds(parameters))
     graph = StartedGraph(options, domain=domain, namespace=namespace)
     try:
         link = GraphLink(domain=domain, namespace=namespace)
@@ -339,6 +354,7 @@ def start_graph(options: Mapping[str, Any], *, domain: int | None, namespace: st
         graph.end()
         raise
     link.owns(graph)
+    link.has_recorder = "recorder" in options
     try:
         link.observe(unit_kinds(parameters), parameters.cycle_time_us * 1e-6)
         graph.wait_until_running(timeout)

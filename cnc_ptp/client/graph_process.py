@@ -45,6 +45,7 @@ def run(pipe: int, options: dict[str, Any], *, composed: bool) -> list[str]:
     from cnc_ptp.nodes.monitor import RunMonitor
     from cnc_ptp.nodes.supervisor import RunOptions, Supervisor
     from cnc_ptp.parameters import read_machine
+    from cnc_ptp.recording.recorder_options import RecorderOptions
 
     told = False
 
@@ -55,7 +56,9 @@ def run(pipe: int, options: dict[str, Any], *, composed: bool) -> list[str]:
             tell(pipe, running=True)
 
     machine = read_machine(options["machine"])
-    run_options = RunOptions(**options, stay=True)
+    given = options.pop("recorder", None)
+    recorder = None if given is None else RecorderOptions(**given)
+    run_options = RunOptions(**options, recorder=recorder, stay=True)
     if composed:
         return run_composed(machine, run_options, show=show)[1]
     supervisor = Supervisor(machine, run_options, show=show)

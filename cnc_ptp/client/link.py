@@ -38,6 +38,8 @@ class Link(ABC):
     """Seconds."""
     clock: str
     """Whose seconds a timeout counts."""
+    has_recorder: bool = True
+    """False: it is known to have none."""
 
     @property
     @abstractmethod
@@ -52,6 +54,10 @@ class Link(ABC):
     @abstractmethod
     def give(self, unit: str, command: str, arguments: Mapping[str, Any]) -> int:
         """Sends a command; the number of its ticket."""
+
+    @abstractmethod
+    def give_recorder(self, command: str, arguments: Mapping[str, Any]) -> int:
+        """The same to the recorder: start, stop or snapshot."""
 
     @abstractmethod
     def answer(self, ticket: int) -> Reply | None:

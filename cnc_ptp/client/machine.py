@@ -5,6 +5,7 @@ from __future__ import annotations
 import atexit
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import asdict, replace
 from os import PathLike, fspath
 from types import TracebackType
 from typing import Any, TypeVar
@@ -13,6 +14,7 @@ from cnc_ptp.client.asking import Rows
 from cnc_ptp.client.faults import check_seconds, unknown_unit
 from cnc_ptp.client.link import Link
 from cnc_ptp.client.plc_cycles import PlcCycles
+from cnc_ptp.client.recorder import Recorder
 from cnc_ptp.client.session import Session, Turns
 from cnc_ptp.client.several_jobs import TrajectoryJob
 from cnc_ptp.client.stream import Stream
@@ -20,6 +22,7 @@ from cnc_ptp.client.units import UNITS, Axis, Channel, Plc, Spindle, Unit
 from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import Event
 from cnc_ptp.protocol.unit import PLC
+from cnc_ptp.recording.recorder_options import RecorderOptions
 
 Path = str | PathLike[str]
 Kind = TypeVar("Kind", Axis, Spindle, Channel)
@@ -36,6 +39,8 @@ class Machine:
 
     def __init__(self, link: Link) -> None:
         self._session = Session(link)
+        self.recorder = Recorder(self._session)
+        """Records on demand: start, stop, snapshot."""
         self._units: dict[str, Unit] = {name: UNITS[kind](self._session, name) for name, kind in link.kinds.items()}
         self.axes: Mapping[str, Axis] = self._of(Axis)
         self.spindles: Mapping[str, Spindle] = self._of(Spindle)
@@ -49,14 +54,15 @@ class Machine:
     # where it comes from
 
     @classmethod
-    def offline(cls, machine: Path, *, record: Path | None = None) -> Machine:
+    def offline(cls, machine: Path, *, record: Path | None = None, recorder: RecorderOptions | None = None) -> Machine:
         """A machine without a graph, as fast as possible, the same to the bit every time. Its first block is computed.
 
-        `record`: an MCAP file, as of `cnc_ptp simulate`. Raises ParameterError, and CncError 26007, 26110, 26117.
+        `record`: an MCAP file, as of `cnc_ptp simulate`; `recorder`: how it is written, and recordings on demand.
+        Raises ParameterError, and CncError 26007, 26012, 26019, 26020, 26110, 26113, 26117, 26222.
         """
         from cnc_ptp.client.offline_link import OfflineLink
 
-        return cls(OfflineLink(fspath(machine), record=None if record is None else fspath(record)))
+        return cls(OfflineLink(fspath(machine), record=None if record is None else fspath(record), recorder=recorder))
 
     @classmethod
     def start(
@@ -64,6 +70,7 @@ class Machine:
         machine: Path,
         *,
         record: Path | None = None,
+        recorder: RecorderOptions | None = None,
         scenario: Path | None = None,
         composed: bool = False,
         domain: int | None = None,
@@ -72,7 +79,8 @@ class Machine:
     ) -> Machine:
         """Starts the ROS graph of a machine, as `cnc_ptp run --stay` does; it ends on its ramps with this program.
 
-        `record`: an MCAP file; `scenario`: timed commands; `composed`: all nodes in one process; `domain`: None =
+        `record`: an MCAP file; `recorder`: how it is written, and recordings on demand; `scenario`: timed commands;
+        `composed`: all nodes in one process; `domain`: None =
         ROS_DOMAIN_ID; `namespace`: of all nodes; `timeout` in s until it runs. Raises ParameterError, CncError 26176
         (not started) and what `cnc_ptp run` refuses: 26107 (the domain is taken), 26108, 26110, 26113, 26117, 26141 …
         """
@@ -80,7 +88,9 @@ class Machine:
 
         check_seconds("start", "timeout", timeout, "nothing was started", finite=True)
         files = {name: fspath(path) for name, path in (("record", record), ("scenario", scenario)) if path is not None}
-        options = {"machine": fspath(machine), "composed": composed, **files}
+        options: dict[str, Any] = {"machine": fspath(machine), "composed": composed, **files}
+        if record is not None or recorder is not None:
+            options["recorder"] = asdict(replace(recorder or RecorderOptions(), scenario=files.get("scenario")))
         return cls(start_graph(options, domain=domain, namespace=namespace, timeout=timeout))
 
     @classmethod

@@ -23,7 +23,10 @@ from cnc_ptp.protocol.blocks import Command, CommandRecord, PlcBlock
 from cnc_ptp.protocol.commands import BAD_ARGUMENT, NEEDS_SOMETHING, THROUGH_PLC
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.recording.offline_run import OfflineRun
+from cnc_ptp.recording.on_demand import Answer
 from cnc_ptp.recording.overwriting import check_recording
+from cnc_ptp.recording.recorder_options import FROM_THE_START, RecorderOptions, check_recorder
+from cnc_ptp.recording.trigger import Condition
 
 STOP_TIME = 15.0
 """Seconds of machine time for all ramps at the end."""
@@ -34,15 +37,16 @@ class OfflineLink(Link):
 
     clock = " of machine time"
 
-    def __init__(self, machine: str, *, record: str | None = None) -> None:
-        """Raises ParameterError, and CncError 26007, 26110, 26117."""
+    def __init__(self, machine: str, *, record: str | None = None, recorder: RecorderOptions | None = None) -> None:
+        """Raises ParameterError, and CncError 26007, 26012, 26019, 26020, 26110, 26113, 26117, 26222."""
         check_recording(record, machine_file=machine)
         self._parameters = read_machine(machine)
         self.kinds = unit_kinds(self._parameters)
         self.seen = Observations(self.kinds)
         self.cycle_time = self._parameters.cycle_time_us * 1e-6
         self._units = build_units(self._parameters, end_when_idle=False)
-        self._run = OfflineRun(self._parameters, self._units, record=record, machine_text=machine_text(machine))
+        self.has_recorder = recorder is not None or record is not None
+        self._run = self._offline_run(machine, record, recorder or FROM_THE_START)
         self._tickets = 0
         self._replies: dict[int, Reply] = {}
         self._asked: dict[int, Command] = {}
@@ -52,6 +56,19 @@ class OfflineLink(Link):
         self._turns: list[asyncio.Future[None]] = []
         self._has_ended = False
         self._step()
+
+    def _offline_run(self, machine: str, record: str | None, recorder: RecorderOptions) -> OfflineRun:
+        check_recorder(recorder, record, self.kinds)
+        recorder.require_places(None)
+        return OfflineRun(
+            self._parameters,
+            self._units,
+            record=record,
+            machine_text=machine_text(machine),
+            condition=None if recorder.when is None else Condition(recorder.when, self.kinds),
+            settings=recorder.settings(),
+            snapshots=recorder.snapshots_of(self.kinds) if self.has_recorder else None,
+        )
 
     @property
     def now(self) -> float:
@@ -77,6 +94,28 @@ class OfflineLink(Link):
             self._plc.input(asked)
             self._asked[self._tickets] = asked
         return self._tickets
+
+    def give_recorder(self, command: str, arguments: Mapping[str, Any]) -> int:
+        """Everything has come up to now, so that it is carried out at once."""
+        self._tickets += 1
+        answers: list[Answer] = []
+        try:
+            self._tell_recorder(command, arguments, answers)
+        except CncError as error:
+            answers.append(Answer(error=error))
+        self._replies[self._tickets] = reply_of_recorder(answers[0])
+        return self._tickets
+
+    def _tell_recorder(self, command: str, arguments: Mapping[str, Any], answers: list[Answer]) -> None:
+        recorder = self._run.recorder
+        assert recorder is not None
+        if command == "start":
+            answers.append(recorder.start(arguments["file"]))
+        elif command == "stop":
+            recorder.stop(answers.append)
+        else:
+            recorder.snapshot(arguments["file"], arguments.get("seconds", 0.0), answers.append)
+        recorder.settle(self.now)
 
     def answer(self, ticket: int) -> Reply | None:
         return self._replies.pop(ticket, None)
@@ -187,3 +226,9 @@ class OfflineLink(Link):
                 self._step()
         finally:
             self._run.close()
+
+
+def reply_of_recorder(answer: Answer) -> Reply:
+    if answer.error is None:
+        return Reply(answer.cycle, 0, answer.warning, {}, 0)
+    return Reply(answer.cycle, answer.error.number, answer.error.message, answer.error.values, 0)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Generator
 from math import inf
 from typing import Any
 
-from cnc_ptp.client.faults import CLOSED, IT_CONTINUES, NOTHING_MOVES, TIMEOUT, error_of
+from cnc_ptp.client.faults import CLOSED, IT_CONTINUES, NOTHING_MOVES, TIMEOUT, error_of, no_recorder
 from cnc_ptp.client.link import Link, Reply
 from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import HandshakeRequest
@@ -36,12 +36,21 @@ class Session:
     def ask(self, unit: str, command: str, arguments: dict[str, Any]) -> Reply:
         """Gives a command and waits for its answer. Raises the unit's refusal, and CncError 26171, 26172."""
         self.require_open(f"{self.link.kinds[unit]} {unit}: {command}")
-        ticket = self.link.give(unit, command, arguments)
+        return self._answered(self.link.give(unit, command, arguments))
+
+    def _answered(self, ticket: int) -> Reply:
         while (reply := self.link.answer(ticket)) is None:
             self.link.turn(inf)
         if reply.error_id:
             raise error_of(reply.error_id, reply.message, reply.values)
         return reply
+
+    def ask_recorder(self, command: str, arguments: dict[str, Any]) -> Reply:
+        """The same to the recorder, which is no unit. Raises its refusal, and CncError 26136, 26171, 26172, 26221."""
+        self.require_open(f"recorder: {command}")
+        if not self.link.has_recorder:
+            raise no_recorder(command)
+        return self._answered(self.link.give_recorder(command, arguments))
 
     def require_open(self, what: str) -> None:
         if self.closed:

@@ -11,6 +11,7 @@ from cnc_ptp.errors import CncError
 
 PATIENCE = 1.5
 """Seconds to look for a running machine."""
+RECORDER = "recorder"
 
 COMPLETE_FROM = click.option(
     "--machine",
@@ -20,7 +21,8 @@ COMPLETE_FROM = click.option(
 
 
 def complete_unit(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[CompletionItem]:
-    return matching(unit_kinds_of(context), incomplete)
+    kinds = unit_kinds_of(context)
+    return matching(kinds | {RECORDER: "not a unit"} if kinds else kinds, incomplete)
 
 
 def complete_shown_unit(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[CompletionItem]:
@@ -38,7 +40,7 @@ def complete_command(context: click.Context, parameter: click.Parameter, incompl
     from cnc_ptp.nodes.client.machine_client import arguments_of, services_of
 
     unit = context.params["unit"]
-    kind = unit_kinds_of(context).get(unit)
+    kind = kind_of(context, unit)
     if kind is None:
         return []
     commands = {command: " ".join(arguments_of(kind, unit, command)) for command in services_of(kind)}
@@ -50,7 +52,7 @@ def complete_word(context: click.Context, parameter: click.Parameter, incomplete
     from cnc_ptp.nodes.client.machine_client import arguments_of
 
     unit, command = context.params["unit"], context.params["command"]
-    kind = unit_kinds_of(context).get(unit)
+    kind = kind_of(context, unit)
     try:
         known = {} if kind is None else arguments_of(kind, unit, command)
     except CncError:
@@ -68,6 +70,11 @@ def complete_word(context: click.Context, parameter: click.Parameter, incomplete
 
 def matching(words: Mapping[str, str], incomplete: str) -> list[CompletionItem]:
     return [CompletionItem(word, help=text or None) for word, text in words.items() if word.startswith(incomplete)]
+
+
+def kind_of(context: click.Context, unit: str) -> str | None:
+    """Of the recorder its own name: it is no unit, and the same for every machine."""
+    return RECORDER if unit == RECORDER else unit_kinds_of(context).get(unit)
 
 
 def unit_kinds_of(context: click.Context) -> dict[str, str]:

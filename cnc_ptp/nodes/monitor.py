@@ -33,6 +33,7 @@ from cnc_ptp.protocol.blocks import ChannelBlock, PlcBlock, Severity
 from cnc_ptp.protocol.notes import Note, Notes, error_text
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.protocol.unit_view import UnitView
+from cnc_ptp.recording.on_demand import begun_file
 from cnc_ptp.wire.block_codec import codec_of
 
 SUPERVISOR = "supervisor"
@@ -57,6 +58,8 @@ class RunMonitor(PollingNode):
         self.run_done = False
         self.ending = ""
         """How a run that stays was ended, with everything at a standstill."""
+        self.on_demand = ""
+        """The newest recording on demand: file or folder; empty without one."""
         self._latest: LatestBlocks | None = None
         self._machine = machine
         self._plc_block = 0
@@ -149,6 +152,7 @@ class RunMonitor(PollingNode):
         if message.severity == Severity.ERROR and message.source != SUPERVISOR:
             self.errors.append(error_text(message))
             self._last_fault = max(self._last_fault, message.cycle)
+        self.on_demand = begun_file(message.error_id, message.text) or self.on_demand
         self.notes.add(Note.of_event(message))
 
     def _on_command(self, message: msg.CommandRecord) -> None:

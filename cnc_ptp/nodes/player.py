@@ -24,7 +24,7 @@ from cnc_ptp.nodes.topics import block_topic, published_topic
 from cnc_ptp.nodes.unit.claim import claim_unit
 from cnc_ptp.number_range import RATE
 from cnc_ptp.recording.qos import parse_profiles
-from cnc_ptp.recording.reader import RawMessage, TopicInfo, iter_messages, read_recording
+from cnc_ptp.recording.reader import RawMessage, TopicInfo, iter_messages, topics_of
 
 DISCOVERY = 5.0
 """Seconds in which subscribers may find the publishers before the first message goes out."""
@@ -45,7 +45,7 @@ class PlayerNode(Node):
     def __init__(self, path: str, *, rate: float, inputs: bool = False) -> None:
         """`rate`: 2.0 = twice as fast. Raises CncError 26001 to 26005 for a file that cannot be read."""
         super().__init__("player", enable_rosout=False)
-        recorded = read_recording(path).topics
+        recorded = topics_of(path)
         topics = {topic: info for topic, info in recorded.items() if inputs or not is_input(info.type_name)}
         self.inputs_left_out = sorted(recorded.keys() - topics.keys())
         classes = {topic: message_class(info.type_name) for topic, info in topics.items()}

@@ -145,7 +145,7 @@ class Supervisor:
             process.spin([monitor], done=self._over, wait=lambda: POLL, after=self._look)
         finally:
             self._end_all()
-            self._close_recording()
+            self._close_recordings()
         return monitor
 
     def _look(self) -> None:
@@ -281,16 +281,17 @@ class Supervisor:
                 end(child, signal.SIGKILL)
                 child.join()
 
-    def _close_recording(self) -> None:
-        """Closes the recording of a recorder that was killed, so that every reader opens it."""
+    def _close_recordings(self) -> None:
+        """Closes what a recorder that was killed was writing, so that every reader opens it."""
         recorder = self._processes.get(RECORDER)
         closed = recorder is None or recorder.exitcode in (0, process.SIGNALLED + signal.SIGTERM)
-        if self._options.record is None or closed or not self._monitor.cycle:
+        if closed or not self._monitor.cycle:
             return
-        try:
-            close_cut_recording(self._options.record)
-        except CncError as error:
-            self.failures.append(str(error))
+        for recording in filter(None, (self._options.record, self._monitor.on_demand)):
+            try:
+                close_cut_recording(recording)
+            except CncError as error:
+                self.failures.append(str(error))
 
 
 def command_lines(

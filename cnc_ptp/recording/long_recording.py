@@ -1,4 +1,4 @@
-"""A recording for a report: whole if it is short, a part of a file that may be long, or reduced to extremes.
+"""A recording for a report: whole if it is short, a part of one that may be long, or reduced to extremes.
 
 Of a long recording each unit keeps about STATES states. Two of them are the smallest and largest values of all cycles
 up to the next two, so that a line through them has the outline of the line through all. Nothing needs the memory of
@@ -7,8 +7,9 @@ more than some seconds of the file.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
 from dataclasses import dataclass, field
 from math import inf, isnan
 from pathlib import Path
@@ -16,10 +17,10 @@ from pathlib import Path
 import numpy as np
 from mcap.opcode import Opcode
 
-from cnc_ptp.recording.bag import FILE
 from cnc_ptp.recording.mcap_chunks import MessageRun, RawRecord
 from cnc_ptp.recording.mcap_index import ChunkPlace, McapIndex
 from cnc_ptp.recording.opened import WORKERS, ahead
+from cnc_ptp.recording.parts import files_of
 from cnc_ptp.recording.reader import (
     AXIS_STATE,
     CHANNEL_STATE,
@@ -42,8 +43,10 @@ from cnc_ptp.recording.statistics import IN_PROGRAM, largest_error
 from cnc_ptp.wire.layout import Bytes, Layout, Records, fixed_layout
 from cnc_ptp.wire.schemas import full_name, parse_schema
 
+Window = tuple[float, float]
+"""Log times in ns."""
 SMALL = 20_000_000
-"""Bytes of a file that is read without a look at its index."""
+"""Bytes of a recording that is read without a look at its index."""
 MOST_STATES = 1_500_000
 """Of all units, in a report with every cycle: 5 minutes of 5 units."""
 STATES, PLACES = 20_000, 200_000
@@ -88,55 +91,82 @@ NOT_CLOSED = "the file was not closed; what was recorded after its last whole ch
 
 
 def read_for_report(
-    path: str | Path, begin: float | None = None, end: float | None = None, *, most_states: int = MOST_STATES
+    path: str | Path, begin: float | None = None, end: float | None = None, *, most_states: int | float = MOST_STATES
 ) -> Recorded:
     """The states from `begin` to `end` in s: every cycle of at most `most_states` states, otherwise reduced.
 
-    Events, commands and attachments are those of the whole file. Raises CncError 26001 to 26005.
+    Of a file or of the parts of a folder. Events, commands and attachments are those of the whole recording.
+    Raises CncError 26001 to 26005, 26014 and 26016.
     """
-    path = Path(path)
-    if not path.is_file() or path.name == FILE or (path.stat().st_size < SMALL and most_states == MOST_STATES):
+    files = files_of(Path(path))
+    if most_states >= MOST_STATES and sum(file.stat().st_size for file in files if file.is_file()) < SMALL:
         return read_recording(path)
-    index = McapIndex(path)
-    try:
-        return _read(index, begin, end, most_states)
-    finally:
-        index.close()
+    with ExitStack() as opened:
+        parts: list[McapIndex] = []
+        for file in files:
+            parts.append(McapIndex(file))
+            opened.callback(parts[-1].close)
+        return _read(Path(path), parts, begin, end, most_states)
 
 
-def _read(index: McapIndex, begin: float | None, end: float | None, most_states: int) -> Recorded:
-    reader = Reader(index.path)
+def _read(
+    path: Path, parts: Sequence[McapIndex], begin: float | None, end: float | None, most_states: int | float
+) -> Recorded:
+    reader = Reader(path)
+    for index in parts:
+        _announce(reader, index)
+        for metadata in index.metadata:
+            reader.metadata(metadata)
+        for name in filter(is_kept, index.attachments):
+            reader.attachment(name, index.attached(name))
+        _feed(reader, index, _ids(index, SPARSE), index.chunks)
+        reader.end_of_file("" if index.indexed else NOT_CLOSED)
+    window = _window(reader.recorded, begin, end)
+    few = _number_of_states(parts, window) <= most_states
+    if few:
+        for index in parts:
+            _announce(reader, index)
+            _feed(reader, index, _ids(index, (*STATE_TYPES, THREAD_STATE)), _inside_of(index, window))
+    recorded = reader.finish()
+    _count_topics(reader, parts)
+    if not few:
+        _reduce(recorded, parts, window)
+    return recorded
+
+
+def _announce(reader: Reader, index: McapIndex) -> None:
+    """The messages that follow are those of this file."""
     reader.begin(index)
-    for metadata in index.metadata:
-        reader.metadata(metadata)
-    for name in filter(is_kept, index.attachments):
-        reader.attachment(name, index.attached(name))
     for schema in index.schemas.values():
         reader.names.add(schema)
     for channel in index.channels.values():
         reader.names.add(channel)
-    window = _window(reader.recorded, begin, end)
-    _feed(reader, index, _ids(index, SPARSE), index.chunks)
-    chunks = [chunk for chunk in index.chunks if chunk.last_ns >= window[0] and chunk.first_ns <= window[1]]
-    states = _ids(index, STATE_TYPES)
-    count = sum(index.counts.get(id, 0) for id in states)
-    few = count * len(chunks) <= most_states * max(1, len(index.chunks))
-    if few:
-        _feed(reader, index, {*states, *_ids(index, (THREAD_STATE,))}, chunks)
-    reader.end_of_file("" if index.indexed else NOT_CLOSED)
-    recorded = reader.finish()
-    _count_topics(reader, index)
-    if not few:
-        _reduce(recorded, index, chunks, window)
-    return recorded
 
 
-def _window(recorded: Recorded, begin: float | None, end: float | None) -> tuple[float, float]:
-    """Log times in ns."""
+def _window(recorded: Recorded, begin: float | None, end: float | None) -> Window:
     near = NEAR_CYCLES * recorded.cycle_time_ns
     low = -np.inf if begin is None else recorded.start_ns + begin * 1e9 - near
     high = np.inf if end is None else recorded.start_ns + end * 1e9 + near
     return low, high
+
+
+def _inside_of(index: McapIndex, window: Window) -> list[ChunkPlace]:
+    """The chunks that may hold messages of that time."""
+    return [chunk for chunk in index.chunks if chunk.last_ns >= window[0] and chunk.first_ns <= window[1]]
+
+
+def _number_of_states(parts: Sequence[McapIndex], window: Window) -> float:
+    """About: those of a file are evenly spread."""
+    return sum(_share(index, window) * _count(index, _ids(index, STATE_TYPES)) for index in parts)
+
+
+def _share(index: McapIndex, window: Window) -> float:
+    """Of the chunks of a file, how many may hold messages of that time."""
+    return len(_inside_of(index, window)) / max(1, len(index.chunks))
+
+
+def _count(index: McapIndex, ids: Collection[int]) -> int:
+    return sum(index.counts.get(id, 0) for id in ids)
 
 
 def _ids(index: McapIndex, types: Collection[str]) -> set[int]:
@@ -156,28 +186,29 @@ def _feed(reader: Reader, index: McapIndex, ids: set[int], chunks: Collection[Ch
             reader.messages(run, record)
 
 
-def _count_topics(reader: Reader, index: McapIndex) -> None:
+def _count_topics(reader: Reader, parts: Sequence[McapIndex]) -> None:
     """Messages of all topics, also of those that were not read."""
-    for id, info in reader.names.topics.items():
-        chunks = _with({id}, index.chunks)
-        if index.counts.get(id) and chunks:
-            info.count = index.counts[id]
+    for info in reader.names.by_name.values():
+        counted = [
+            (_count(index, ids), _with(ids, index.chunks)) for index in parts if (ids := index.ids_of(info.topic))
+        ]
+        chunks = [chunk for _, found in counted for chunk in found]
+        info.count = sum(count for count, _ in counted)
+        if info.count and chunks:
             info.first_ns, info.last_ns = chunks[0].first_ns, max(chunk.last_ns for chunk in chunks)
             reader.recorded.topics[info.topic] = info
 
 
-def _reduce(recorded: Recorded, index: McapIndex, chunks: Collection[ChunkPlace], window: tuple[float, float]) -> None:
+def _reduce(recorded: Recorded, parts: Sequence[McapIndex], window: Window) -> None:
     """Fills in the states."""
-    states = _ids(index, STATE_TYPES)
-    longest = max(index.counts.get(id, 0) for id in states) * len(chunks) / max(1, len(index.chunks))
+    topics = sorted({index.channels[id].topic for index in parts for id in _ids(index, STATE_TYPES)})
+    longest = max(_states_of(parts, topic, window) for topic in topics)
     stride, path_stride = (max(1, round(longest / count)) for count in (STATES, PLACES))
     units: dict[str, _Unit] = {}
-    for id in sorted(states):
-        topic = index.channels[id].topic
-        schema = index.schemas[index.channels[id].schema_id]
-        layout = fixed_layout(parse_schema(full_name(schema.name), schema.data.decode()))
+    for topic in topics:
+        layout = _layout_of(parts, topic)
         unit = _Unit(recorded.topics[topic].type_name, layout, stride, path_stride, recorded.block_cycles)
-        for contents in _batches(index, id, layout.dtype.itemsize, chunks, window):
+        for contents in _batches(parts, topic, layout.dtype.itemsize, window):
             unit.add(contents)
         if unit.last_cycle >= 0:
             unit.finish()
@@ -196,22 +227,33 @@ def _reduce(recorded: Recorded, index: McapIndex, chunks: Collection[ChunkPlace]
     )
 
 
-def _batches(
-    index: McapIndex, id: int, size: int, chunks: Collection[ChunkPlace], window: tuple[float, float]
-) -> Iterator[list[Bytes]]:
-    """The states of a unit in the order of the file; chunks are uncompressed while others are reduced."""
+def _states_of(parts: Sequence[McapIndex], topic: str, window: Window) -> float:
+    return sum(_share(index, window) * _count(index, index.ids_of(topic)) for index in parts)
 
-    def read(chunk: ChunkPlace) -> list[Bytes]:
-        runs = [_inside(run, window) for run in index.runs(chunk, {id})]
+
+def _layout_of(parts: Sequence[McapIndex], topic: str) -> Layout:
+    """As the first file that has the topic says."""
+    index, id = next((index, id) for index in parts for id in index.ids_of(topic))
+    schema = index.schemas[index.channels[id].schema_id]
+    return fixed_layout(parse_schema(full_name(schema.name), schema.data.decode()))
+
+
+def _batches(parts: Sequence[McapIndex], topic: str, size: int, window: Window) -> Iterator[list[Bytes]]:
+    """The states of a unit in the order of the files; chunks are uncompressed while others are reduced."""
+
+    def read(place: tuple[McapIndex, ChunkPlace]) -> list[Bytes]:
+        index, chunk = place
+        runs = [_inside(run, window) for run in index.runs(chunk, index.ids_of(topic))]
         for run in runs:
             if run.shape[1] != size:
-                topic, kind = index.channels[id].topic, f"instead of {size}"
-                raise index.corrupt(chunk.offset, f"a message of {topic} has {run.shape[1]} bytes {kind}")
+                reason = f"a message of {topic} has {run.shape[1]} bytes instead of {size}"
+                raise index.corrupt(chunk.offset, reason)
         return [run for run in runs if len(run)]
 
+    places = [(index, chunk) for index in parts for chunk in _with(index.ids_of(topic), _inside_of(index, window))]
     with ThreadPoolExecutor(max_workers=WORKERS) as workers:
         found: list[Bytes] = []
-        for count, runs in enumerate(ahead(workers, read, _with({id}, chunks)), start=1):
+        for count, runs in enumerate(ahead(workers, read, places), start=1):
             found += runs
             if found and count % BATCH == 0:
                 yield found
@@ -220,7 +262,7 @@ def _batches(
             yield found
 
 
-def _inside(run: MessageRun, window: tuple[float, float]) -> Bytes:
+def _inside(run: MessageRun, window: Window) -> Bytes:
     times = run.head["log_time"]
     inside = (times >= window[0]) & (times <= window[1])
     return run.contents if inside.all() else run.contents[inside]

@@ -7,12 +7,13 @@ that is not whole. Anything else that does not fit is corruption and raises an e
 
 from __future__ import annotations
 
+import os
 import struct
 import zlib
 from collections.abc import Callable, Iterator
 from io import BytesIO
 from pathlib import Path
-from typing import NamedTuple, TypeVar
+from typing import BinaryIO, NamedTuple, TypeVar
 
 import numpy as np
 import zstandard
@@ -35,6 +36,7 @@ Record = TypeVar("Record")
 KNOWN_OPCODES = frozenset(int(opcode) for opcode in Opcode)
 FIRST_PRIVATE_OPCODE = 0x80
 RUN_STEP = 64
+STEP = 2**20
 
 
 class RawRecord(NamedTuple):
@@ -141,8 +143,9 @@ class RecordReader:
 
 
 class McapRecords(RecordReader):
-    """The records of a file in order; after iteration `complete` and `missing` say what is missing, if anything.
+    """The records of a file in order, one after another: no more than one of them is in memory.
 
+    After iteration `complete` and `missing` say what is missing, if anything.
     Raises CncError 26001 (cannot be opened), 26002 (not an MCAP file), 26003 (corrupt: where, why).
     """
 
@@ -150,38 +153,62 @@ class McapRecords(RecordReader):
         super().__init__(path)
         self.complete = False
         self.missing = ""
+        self._crc = 0
+        """Of what was read so far."""
         try:
-            self._data = memoryview(path.read_bytes())
+            with path.open("rb") as file:
+                begin = file.read(len(MCAP0_MAGIC))
+                self._size = file.seek(0, os.SEEK_END)
+                end = self._bytes(file, max(0, self._size - len(MCAP0_MAGIC)), len(MCAP0_MAGIC))
         except OSError as error:
             raise self.unreadable(error) from error
         self._data_ended = False
-        self.require_magic(bytes(self._data[: len(MCAP0_MAGIC)]))
-        self._cut_off = bytes(self._data[-len(MCAP0_MAGIC) :]) != MCAP0_MAGIC or len(self._data) == len(MCAP0_MAGIC)
+        self.require_magic(begin)
+        self._cut_off = end != MCAP0_MAGIC or self._size == len(MCAP0_MAGIC)
+
+    def _bytes(self, file: BinaryIO, offset: int, length: int) -> bytes:
+        file.seek(offset)
+        return file.read(length)
 
     def __iter__(self) -> Iterator[RawRecord]:
-        data, offset, end = self._data, len(MCAP0_MAGIC), len(self._data)
+        with self.path.open("rb") as file:
+            yield from self._records(file)
+
+    def _records(self, file: BinaryIO) -> Iterator[RawRecord]:
+        offset, end = len(MCAP0_MAGIC), self._size
+        self._crc = zlib.crc32(MCAP0_MAGIC)
         while offset < end:
-            if end - offset < RECORD_PREFIX.size:
+            head = self._bytes(file, offset, RECORD_PREFIX.size)
+            if len(head) < RECORD_PREFIX.size:
                 return self._stop(offset, f"{end - offset} bytes of a record head follow")
-            opcode, length = RECORD_PREFIX.unpack_from(data, offset)
+            opcode, length = RECORD_PREFIX.unpack(head)
             self._require_known(offset, opcode)
             start = offset + RECORD_PREFIX.size
             if length > end - start:
                 return self._stop(
                     offset, f"a record of {length} bytes begins there, {end - start} bytes of it are present"
                 )
-            record = RawRecord(offset, opcode, data[start : start + length])
+            body = file.read(length)
+            record = RawRecord(offset, opcode, memoryview(body))
             yield record
             offset = start + length
             if opcode == Opcode.DATA_END:
                 self._check_data_crc(record)
             elif opcode == Opcode.FOOTER:
-                return self._finish(record, offset)
+                return self._finish(file, record, offset)
+            elif not self._data_ended:
+                self._crc = zlib.crc32(body, zlib.crc32(head, self._crc))
         return self._stop(offset, "the summary is missing")
 
     def crc_up_to(self, offset: int) -> int:
         """CRC of the file before `offset`."""
-        return zlib.crc32(self._data[:offset])
+        crc = 0
+        with self.path.open("rb") as file:
+            while offset > 0:
+                part = file.read(min(offset, STEP))
+                crc = zlib.crc32(part, crc)
+                offset -= len(part) or offset
+        return crc
 
     def _require_known(self, offset: int, opcode: int) -> None:
         if opcode not in KNOWN_OPCODES and opcode < FIRST_PRIVATE_OPCODE:
@@ -190,17 +217,18 @@ class McapRecords(RecordReader):
     def _check_data_crc(self, record: RawRecord) -> None:
         self._data_ended = True
         expected = self.parse(DataEnd.read, record).data_section_crc
-        if expected not in (0, self.crc_up_to(record.offset)):
+        if expected not in (0, self._crc):
             raise self.corrupt(record.offset, "the CRC of the data section does not match its content")
 
-    def _finish(self, record: RawRecord, end: int) -> None:
+    def _finish(self, file: BinaryIO, record: RawRecord, end: int) -> None:
         if not self._data_ended:
             raise self.corrupt(record.offset, "the footer comes without an end of the data section before it")
         footer = self.parse(Footer.read, record)
-        summary = self._data[footer.summary_start or record.offset : record.offset + RECORD_PREFIX.size + 16]
+        begin = footer.summary_start or record.offset
+        summary = self._bytes(file, begin, max(0, record.offset + RECORD_PREFIX.size + 16 - begin))
         if footer.summary_crc not in (0, zlib.crc32(summary)):
             raise self.corrupt(record.offset, "the CRC of the summary does not match its content")
-        rest = bytes(self._data[end:])
+        rest = self._bytes(file, end, self._size - end)
         if rest == MCAP0_MAGIC:
             self.complete = True
         elif MCAP0_MAGIC.startswith(rest):
@@ -213,7 +241,7 @@ class McapRecords(RecordReader):
         if not self._cut_off:
             raise self.corrupt(offset, found)
         self.missing = (
-            f"the file ends at offset {len(self._data)} without having been closed ({found}, "
+            f"the file ends at offset {self._size} without having been closed ({found}, "
             f"last whole record up to offset {offset}); what was recorded after the last whole chunk is missing"
         )
 

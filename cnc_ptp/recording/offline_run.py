@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from types import TracebackType
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
 from cnc_ptp.parameters import MachineParameters
-from cnc_ptp.protocol.blocks import CycleTick
+from cnc_ptp.protocol.blocks import CycleTick, Event
 from cnc_ptp.protocol.unit import PLC, Unit
 from cnc_ptp.recording.checkpoints import CHECKPOINT_SECONDS, Checkpoints
 from cnc_ptp.recording.mcap_file import NOT_WRITTEN
+from cnc_ptp.recording.on_demand import OnDemand, Snapshots
 from cnc_ptp.recording.settings import Settings
 from cnc_ptp.recording.trigger import Condition, TriggeredRecording, make_recording
 from cnc_ptp.recording.writer import AS_USUAL, Recording
+from cnc_ptp.wire.stamps import Stamps
 
 
 class OfflineRun:
@@ -37,17 +39,31 @@ class OfflineRun:
         condition: Condition | None = None,
         settings: Settings = AS_USUAL,
         checkpoint_seconds: float = CHECKPOINT_SECONDS,
+        snapshots: Snapshots | None = None,
     ) -> None:
         """`units` in the order of computation; `machine_text` is kept in the recording `record`.
 
         `condition`: with which the recording begins; None: at once. `checkpoint_seconds` of machine time between two
-        checkpoints; 0: none.
+        checkpoints; 0: none. `snapshots`: what is kept by a recorder that also records on demand; None: without one.
         """
         self.machine = OfflineMachine(parameters, units)
         cycle_time_ns = parameters.cycle_time_us * 1000
         self._recording: Recording | None = None
         if record is not None:
             self._recording = make_recording(record, machine_text, 0, cycle_time_ns, condition, settings)
+        self.recorder: OnDemand | None = None
+        """Records on demand, and has the recording of the run."""
+        self.cycle_time = cycle_time_ns * 1e-9
+        if snapshots is not None:
+            self.recorder = OnDemand(
+                machine_text,
+                Stamps(0, cycle_time_ns),
+                units,
+                current=self._recording,
+                settings=settings,
+                snapshots=snapshots,
+                publish=self._note_event,
+            )
         self._checkpoints: Checkpoints | None = None
         if self._recording is not None and checkpoint_seconds > 0.0:
             self._checkpoints = Checkpoints(self._recording, parameters, checkpoint_seconds)
@@ -71,17 +87,41 @@ class OfflineRun:
         return isinstance(self._recording, TriggeredRecording) and self._recording.begin is None
 
     def close(self) -> None:
-        if self._recording is not None:
+        sink = self.recorder or self._recording
+        if sink is not None:
             with self._going_on():
-                self._recording.close()
+                sink.close()
+
+    @property
+    def now(self) -> float:
+        """Machine time in s up to which everything is computed."""
+        return self.machine.next_cycle * self.cycle_time
 
     def _recorded(self, outputs: Outputs) -> Outputs:
-        if self._recording is not None and self.failure is None:
+        sink = self.recorder or (self._recording if self.failure is None else None)
+        if sink is not None:
             with self._going_on():
-                write(self._recording, outputs)
-                if self._checkpoints is not None and not self.waits_for_trigger:
-                    self._checkpoints.watch(self.machine)
+                write(sink, outputs)
+                if self._has_checkpoints:
+                    self._watch_checkpoints()
+        if self.recorder is not None:
+            self.recorder.carry_out(self.now)
         return outputs
+
+    @property
+    def _has_checkpoints(self) -> bool:
+        """While the recording of the run is being written; those on demand have none."""
+        is_current = self.recorder is None or self.recorder.current is self._recording
+        return is_current and not self.waits_for_trigger
+
+    def _watch_checkpoints(self) -> None:
+        if self._checkpoints is not None:
+            self._checkpoints.watch(self.machine)
+
+    def _note_event(self, event: Event) -> None:
+        """Of the recorder, which records it as one of the run."""
+        if self.recorder is not None:
+            self.recorder.event(event)
 
     @contextmanager
     def _going_on(self) -> Iterator[None]:
@@ -92,6 +132,9 @@ class OfflineRun:
             if error.number != NOT_WRITTEN:
                 raise
             self.failure = self.failure or error
+            if self.recorder is not None:
+                with suppress(CncError):
+                    self.recorder.fail()
 
     def __enter__(self) -> OfflineRun:
         return self
@@ -102,7 +145,7 @@ class OfflineRun:
         self.close()
 
 
-def write(recording: Recording, outputs: Outputs) -> None:
+def write(recording: Recording | OnDemand, outputs: Outputs) -> None:
     """Records the blocks, events and commands of all units for one tick."""
     plc = outputs[PLC].block
     recording.tick(CycleTick(plc.first_cycle, plc.count))

@@ -7,8 +7,9 @@ to its last cycle are there, and a moment later, because commands and events may
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Iterable
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -31,6 +32,7 @@ NOTHING_KEPT = 26193
 SNAPSHOT_TAKEN = 26194
 SNAPSHOT_FAILED = 26195
 BAD_SECONDS = 26197
+RECORDING_BEGUN = 26220
 LONGEST = 86400.0
 """Seconds that may be asked for."""
 NOT_CHANGED = "nothing was changed"
@@ -169,11 +171,11 @@ class OnDemand:
         """`now` in s of any steady clock."""
         if self.current is not None:
             self.current.flush_if_due(now)
-        self._carry_out(now)
+        self.carry_out(now)
 
     def close(self) -> None:
         """Carries out what was asked for, with what is there, and closes the present recording."""
-        self._carry_out(math.inf)
+        self.carry_out(math.inf)
         try:
             if self.current is not None:
                 self.current.close()
@@ -195,6 +197,8 @@ class OnDemand:
         self._begin, self._end = begin, math.inf
         for record in self._history.before(begin):
             write_record(self.current, record)
+        text = f"{RECORDER}: recording {file} begins with cycle {begin}"
+        self._publish(Event(begin, RECORDER, Severity.INFO, RECORDING_BEGUN, text))
         return Answer(begin)
 
     def stop(self, done: Done) -> None:
@@ -261,11 +265,21 @@ class OnDemand:
 
         self._jobs.append(Job(end, carry_out, done))
 
-    def _carry_out(self, now: float) -> None:
+    def carry_out(self, now: float) -> None:
+        """What is due of what was asked for; `now` as of flush_if_due."""
         for job in [*self._jobs]:
             if self._is_due(job, now):
                 self._jobs.remove(job)
                 self._writing.append((job.carry_out(), job.done))
+        self._answer_written()
+
+    def settle(self, now: float) -> None:
+        """Everything has come up to now: carries out at once what waits for no later cycle, to its end."""
+        for job in self._jobs:
+            if job.end <= self._newest:
+                job.settled_at = now
+        self.carry_out(now)
+        wait([future for future, _ in self._writing])
         self._answer_written()
 
     def _is_due(self, job: Job, now: float) -> bool:
@@ -332,6 +346,12 @@ class OnDemand:
 
     def _cycles(self, seconds: float) -> int:
         return round(seconds * 1e9 / self.stamps.cycle_time_ns)
+
+
+def begun_file(error_id: int, text: str) -> str:
+    """The file or folder of a recording on demand, of the event that it has begun; empty of all other events."""
+    begun = re.fullmatch(rf"{RECORDER}: recording (.+) begins with cycle \d+", text, re.DOTALL)
+    return begun[1] if begun is not None and error_id == RECORDING_BEGUN else ""
 
 
 def without_what(first_cycle: int, forgotten: int = -1) -> dict[str, str]:

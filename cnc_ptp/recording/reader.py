@@ -48,6 +48,13 @@ class TopicInfo:
     last_ns: int = 0
     qos: str = ""
 
+    def add(self, run: MessageRun) -> None:
+        """Counts messages."""
+        times = run.head["log_time"]
+        self.first_ns = int(times.min()) if self.count == 0 else min(self.first_ns, int(times.min()))
+        self.last_ns = max(self.last_ns, int(times.max()))
+        self.count += len(times)
+
 
 class Diagnostic(NamedTuple):
     """One status of a diagnostics message."""
@@ -183,6 +190,22 @@ def read_recording(path: str | Path) -> Recorded:
     return reader.finish()
 
 
+def topics_of(path: str | Path) -> dict[str, TopicInfo]:
+    """The topics that have messages, piece by piece: nothing of them is kept. Same errors as read_recording."""
+    by_name: dict[str, TopicInfo] = {}
+    for file in files_of(Path(path)):
+        records = McapRecords(file)
+        names = _Names(records, by_name)
+        for record in records:
+            names.take(record)
+            for item in records.in_chunk(record) if record.opcode == Opcode.CHUNK else ():
+                if isinstance(item, MessageRun):
+                    names.topic(item, record).add(item)
+                else:
+                    names.add(item)
+    return {topic: info for topic, info in by_name.items() if info.count}
+
+
 def iter_messages(path: str | Path, topics: Collection[str] | None = None) -> Iterator[RawMessage]:
     """All whole messages in log-time order, as bytes; of the given topics only. Same errors as read_recording."""
     waiting: list[tuple[int, int, RawMessage]] = []
@@ -258,6 +281,7 @@ class Reader:
 
     records: RecordReader
     names: _Names
+    _decoders: DecoderFactory
 
     def __init__(self, path: Path) -> None:
         self._by_name: dict[str, TopicInfo] = {}
@@ -265,7 +289,6 @@ class Reader:
         self.recorded = Recorded(path)
         self._layouts: dict[str, Layout] = {}
         self._rows: dict[str, list[npt.NDArray[np.uint8]]] = {}
-        self._decoders = DecoderFactory()
         self._handlers: dict[str, Callable[[int, str, Any], None]] = {
             EVENT: self._event,
             COMMAND: self._command,
@@ -277,6 +300,7 @@ class Reader:
         """The records that come are those of another file."""
         self.records = records
         self.names = _Names(records, self._by_name)
+        self._decoders = DecoderFactory()  # it knows schemas by their number in the file
 
     def end_of_file(self, missing: str) -> None:
         """`missing`: what the file lacks, if anything."""
@@ -329,10 +353,7 @@ class Reader:
 
     def messages(self, run: MessageRun, record: RawRecord) -> None:
         info = self.names.topic(run, record)
-        times = run.head["log_time"]
-        info.first_ns = int(times.min()) if info.count == 0 else min(info.first_ns, int(times.min()))
-        info.last_ns = max(info.last_ns, int(times.max()))
-        info.count += len(times)
+        info.add(run)
         if info.type_name in (*STATE_TYPES, THREAD_STATE, TICK):
             self._fixed(info, run, record)
         elif info.type_name in self._handlers:

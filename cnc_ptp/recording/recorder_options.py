@@ -4,22 +4,34 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
+from math import inf
 from pathlib import Path
 
+from cnc_ptp.errors import CncError
 from cnc_ptp.machine.program_files import read_file
 from cnc_ptp.recording.on_demand import Snapshots
-from cnc_ptp.recording.settings import Settings, read_split
+from cnc_ptp.recording.settings import COMPRESSIONS, Settings, read_split
 from cnc_ptp.recording.trigger import Condition
 from cnc_ptp.recording.writer import PLC_FILE
 from cnc_ptp.recording.writing_place import require_folder, require_writable
 
+BAD_OPTIONS = 26222
 SCENARIO_FILE = "scenario.yaml"
 """Name in the recording."""
 
 
 @dataclass(frozen=True, slots=True)
 class RecorderOptions:
-    """Options of the recorder; None or 0: not given. `scenario` and `plc`: files that are kept in the recording."""
+    """Options of the recorder; None or 0: not given.
+
+    when           condition with which the recording of the run begins: 'x.set_velocity != 0'
+    split          parts of a size or a time, '500MB' or '10min'; recordings are folders then
+    compression    zstd, lz4 or none
+    keep           seconds that are kept in memory for snapshots
+    snapshots      folder for a snapshot at each error, which needs `keep`
+    snapshot_when  condition with which a snapshot is taken too: 'x.following_error > 0.1'; needs `snapshots`
+    scenario, plc  files that are kept in the recording
+    """
 
     when: str | None = None
     split: str | None = None
@@ -52,6 +64,19 @@ class RecorderOptions:
         if self.split is not None:
             read_split(self.split)
 
+    def require_sense(self, record: str | None) -> None:
+        """Raises CncError 26222 for values that are none, and for options that need another one."""
+        wrong = (
+            (self.compression not in COMPRESSIONS, f"compression = '{self.compression}' is none of zstd, lz4, none"),
+            (not 0.0 <= self.keep < inf, f"keep = {self.keep:g} s is no time"),
+            (self.when is not None and record is None, "when needs record: it is of the recording of the run"),
+            (self.snapshots is not None and not self.keep, "snapshots needs keep: they are of what is kept in memory"),
+            (self.snapshot_when is not None and self.snapshots is None, "snapshot_when needs snapshots"),
+        )
+        for is_wrong, reason in wrong:
+            if is_wrong:
+                raise CncError(BAD_OPTIONS, reason, "nothing was started", where="recorder options")
+
     def settings(self) -> Settings:
         """Raises CncError 26019 and 26110."""
         files = {}
@@ -69,6 +94,12 @@ class RecorderOptions:
         return Snapshots(
             self.keep, folder, None if self.snapshot_when is None else Condition(self.snapshot_when, kinds)
         )
+
+
+def check_recorder(options: RecorderOptions, record: str | None, kinds: Mapping[str, str]) -> None:
+    """Before anything is started: raises CncError 26012, 26019 and 26222."""
+    options.require_sense(record)
+    options.check(kinds)
 
 
 FROM_THE_START = RecorderOptions()

@@ -14,10 +14,11 @@ from mcap.well_known import MessageEncoding, SchemaEncoding
 from mcap.writer import MCAP0_MAGIC
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.recording.bag import RECORD
+from cnc_ptp.recording.bag import FILE, RECORD
 from cnc_ptp.recording.mcap_chunks import KNOWN_OPCODES, MessageRun, RawRecord, RecordReader
 from cnc_ptp.recording.mcap_file import METADATA, MISSING, RECORD_PREFIX, McapFile
 from cnc_ptp.recording.mcap_index import McapIndex
+from cnc_ptp.recording.parts import PartsFolder, files_of, information_of
 
 
 @dataclass
@@ -29,13 +30,39 @@ class Recovered:
 
 
 def recover(source: str | Path, output: str | Path) -> Recovered:
-    """Writes whole records of `source`, chunk by chunk, to `output`; parts that are damaged are left out.
+    """Writes whole records of `source`, chunk by chunk, to `output`; chunks that are damaged are left out.
 
-    Raises CncError 26001, 26002 and 26007.
+    A folder of parts becomes a folder of parts, without those of which nothing can be read.
+    Raises CncError 26001, 26002, 26007 and 26014; of a folder 26020, and 26001 or 26002 when no part can be read.
     """
-    path = Path(source)
+    path, new = Path(source), Path(output)
+    return _recover_file(path, new) if path.is_file() and path.name != FILE else _recover_parts(files_of(path), new)
+
+
+def _recover_parts(parts: list[Path], output: Path) -> Recovered:
+    """`lost` names the part."""
+    readable, whole = [], Recovered()
+    for part in parts:
+        try:
+            _Records(part).close()
+            readable.append(part)
+        except CncError as error:
+            if part is parts[-1] and not readable:
+                raise
+            whole.lost.append(f"{part.name}: {error.reason}")
+    folder = PartsFolder(output)
+    for part in readable:
+        target = folder.next_part()
+        recovered = _recover_file(part, target)
+        folder.add(target, information_of(target))
+        whole.messages += recovered.messages
+        whole.lost += [f"{part.name}: {text}" for text in recovered.lost]
+    return whole
+
+
+def _recover_file(path: Path, output: Path) -> Recovered:
     records = _Records(path)
-    with McapFile(Path(output)) as file:
+    with McapFile(output) as file:
         copy = _Copy(records, file, *_names_of_summary(path))
         for record in records:
             copy.take(record)
@@ -68,7 +95,14 @@ class _Records(RecordReader):
             begin = self._stream.read(len(MCAP0_MAGIC))
         except OSError as error:
             raise self.unreadable(error) from error
-        self.require_magic(begin)
+        try:
+            self.require_magic(begin)
+        except CncError:
+            self.close()
+            raise
+
+    def close(self) -> None:
+        self._stream.close()
 
     def __iter__(self) -> Iterator[RawRecord]:
         offset = len(MCAP0_MAGIC)

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.recording.reader import AXIS_STATE, SPINDLE_STATE, Recorded
+from cnc_ptp.recording.reader import AXIS_STATE, SPINDLE_STATE, STATE_TYPES, Recorded
 from cnc_ptp.wire.layout import Records
 
 NOT_RECORDED = 26011
@@ -85,7 +85,15 @@ def asked_time(begin: float | None, end: float | None) -> str:
 def _nothing(recorded: Recorded, begin: float | None, end: float | None) -> str:
     cycle_time = recorded.cycle_time_ns * 1e-9
     asked = asked_time(begin, end)
-    if not recorded.states:
-        return "holds no states"
-    first = min(int(rows["cycle"].min()) for rows in recorded.states.values())
-    return f"nothing from {asked}, it covers {first * cycle_time:g} s to {recorded.last_cycle * cycle_time:g} s"
+    if recorded.states:
+        first = min(int(rows["cycle"].min()) for rows in recorded.states.values()) * cycle_time
+        last = recorded.last_cycle * cycle_time
+    else:  # only this time was read
+        topics = [info for info in recorded.topics.values() if info.type_name in STATE_TYPES]
+        if not topics:
+            return "holds no states"
+        first, last = (
+            (time - recorded.start_ns) * 1e-9
+            for time in (min(info.first_ns for info in topics), max(info.last_ns for info in topics))
+        )
+    return f"nothing from {asked}, it covers {first:g} s to {last:g} s"

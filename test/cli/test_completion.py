@@ -23,10 +23,10 @@ def test_commands_of_the_command_line():
     assert completed(incomplete="wa") == ["watch"]
 
 
-@pytest.mark.parametrize(("command", "plc"), [("do", ["plc"]), ("watch", [])])
-def test_units(command, plc):
-    """`watch` refuses the plc, which has no state."""
-    assert completed(command, "--machine", MILL) == [*plc, "channel", "s", "x", "y", "z"]
+@pytest.mark.parametrize(("command", "plc", "recorder"), [("do", ["plc"], ["recorder"]), ("watch", [], [])])
+def test_units(command, plc, recorder):
+    """`watch` refuses the plc, which has no state, and the recorder, which is no unit."""
+    assert completed(command, "--machine", MILL) == [*plc, "channel", "s", "x", "y", "z", *recorder]
     assert completed(command, "--machine", PTP, incomplete="c") == ["c"]
 
 
@@ -67,6 +67,15 @@ def test_commands_and_arguments_of_a_unit():
     assert completed("do", "--machine", MILL, "x", "power", incomplete="enabled=") == ["enabled=on", "enabled=off"]
 
 
+def test_what_the_recorder_can_be_told():
+    assert completed("do", "--machine", MILL, incomplete="re") == ["recorder"]
+    assert sorted(completed("do", "recorder")) == ["snapshot", "start", "stop"]
+    assert completed("do", "recorder", "start") == ["file="]
+    assert completed("do", "recorder", "stop") == []
+    assert completed("do", "recorder", "snapshot", "file=a.mcap") == ["seconds="]
+    assert completed("do", "recorder", "rewind") == []
+
+
 def test_nothing_is_completed_where_nothing_is_known(tmp_path):
     assert completed("do", "--machine", tmp_path / "none.yaml") == []
     assert completed("do", "--machine", MILL, "q") == []
@@ -89,7 +98,7 @@ def test_a_running_machine_is_asked(monkeypatch):
         "cnc_ptp.nodes.client.machine_client.connected",
         lambda patience: asked.append(ros_arguments().namespace) or Machine(),
     )
-    assert completed("do", "--namespace", "/cell") == ["x", "channel"]
+    assert completed("do", "--namespace", "/cell") == ["x", "channel", "recorder"]
     assert completed("jog") == ["x"]
     assert asked == ["/cell", ""] and completion.PATIENCE < 2.0
 

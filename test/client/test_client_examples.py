@@ -117,7 +117,7 @@ def test_the_code_of_the_document_runs(tmp_path: Path, monkeypatch: pytest.Monke
             names["m"] = m
             m.x.move_absolute(5).wait()
         names["test_the_tool_is_changed_above_the_part"](m)
-    assert len(blocks) == 7
+    assert len(blocks) == 8
     assert {"100.0", "T 1", "M 6", "True True 20.0", "True"} <= {*out.getvalue().splitlines()}
 
 

@@ -125,6 +125,31 @@ def test_each_node_by_itself(launched, tmp_path):
         assert end(refused, {}).options == {"reason": "axis-2 was refused"} and end(died, {}) is None
 
 
+def test_options_of_the_recorder(launched, tmp_path):
+    given = {
+        "split": "10s",
+        "compression": "lz4",
+        "keep": "5",
+        "snapshots": tmp_path,
+        "record_when": "x.set_velocity > 1",
+    }
+    (node,) = launched(machine=MILL, record=tmp_path / "run", recorder="true", **given)
+    words = node.command_line()[1:]
+    assert words[-2:] == ["--recorder", "--ros-args"]
+    for name, value in given.items():
+        assert words[words.index(f"--{name.replace('_', '-')}") + 1] == str(value)
+    recorder, *_ = launched(machine=MILL, record=tmp_path / "run", separate="true", **given)
+    assert recorder.command_line()[1:-3] == [
+        *(str(MILL), str(tmp_path / "run"), "--when", "x.set_velocity > 1", "--split", "10s", "--compression", "lz4"),
+        *("--keep", "5.0", "--snapshots", str(tmp_path)),
+    ]
+    recorder, *_, clock = launched(machine=MILL, separate="true", recorder="true")
+    assert recorder.command_line()[1:] == [str(MILL), "--ros-args", "-r", "__node:=recorder"]
+    assert clock.command_line()[1:4] == [str(MILL), "--wait-for", "recorder"]
+    with pytest.raises(CncError, match="P-ERR-26222 recorder options: snapshots needs keep"):
+        launched(machine=MILL, separate="true", snapshots=tmp_path)
+
+
 def test_bad_input_is_told_before_anything_starts(launched, tmp_path):
     machine = one_axis_machine(tmp_path)
     with pytest.raises(CncError, match="P-ERR-26110 scenario /no cannot be read"):

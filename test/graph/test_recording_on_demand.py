@@ -2,8 +2,10 @@
 
 import pytest
 import rclpy
-from graph_support import PTP, Running, run, states_equal, verified
+from graph_support import PTP, Running, kill, run, states_equal, verified
+from rosbags.rosbag2 import Reader
 
+from cnc_ptp.client import CncError, Machine, RecorderOptions
 from cnc_ptp.nodes import process
 from cnc_ptp.nodes.topics import RECORDER_SERVICES
 from cnc_ptp.recording.reader import read_recording
@@ -107,6 +109,45 @@ def test_commands_of_the_command_line(tmp_path):
             full_blocks(file)
     finally:
         graph.end()
+
+
+@pytest.mark.parametrize("options", [[], ["--split", "1s"]], ids=["file", "parts"])
+def test_a_killed_recorder_leaves_a_recording_that_every_reader_opens(tmp_path, options):
+    graph = Running(PTP, "--stay", "--recorder", *options)
+    try:
+        nodes = graph.wait_for_nodes(5)
+        path = tmp_path / ("parts" if options else "a.mcap")
+        run("do", "recorder", "start", path)
+        newest = path / "parts_1.mcap" if options else path
+        graph.wait_until_recorded(newest, 20_000)
+        kill(nodes["recorder"])
+        output = graph.finish(expect=1)
+        assert "P-ERR-26104 node 'recorder' " in output
+    finally:
+        graph.end()
+    recorded = verified(path, whole=False)
+    assert not recorded.complete and "without having been closed" in recorded.missing
+    with Reader(path if options else path.parent) as bag:
+        assert bag.message_count == sum(1 for _ in bag.messages()) > 0
+
+
+def test_the_client_of_a_graph_records(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    options = RecorderOptions(keep=5.0, compression="lz4")
+    with Machine.start(PTP, composed=True, recorder=options) as m:
+        m.x.move_absolute(20, velocity=50)
+        began = m.recorder.start("a.mcap")
+        m.run_for(0.5)
+        ended = m.recorder.stop()
+        taken = m.recorder.snapshot("b.mcap", 0.3)
+        with pytest.raises(CncError) as refused:
+            m.recorder.stop()
+        assert str(refused.value) == (
+            "P-ERR-26191 recorder: stop refused: no recording is being written; nothing was changed"
+        )
+    assert full_blocks("a.mcap") == (began.cycle, ended.cycle - 1)
+    first, last = full_blocks("b.mcap")
+    assert first == taken.cycle and 300 <= last - first + 1 <= 320
 
 
 def test_without_a_recorder(tmp_path):

@@ -1,6 +1,7 @@
 """Recordings for reports: a long one is reduced to extremes, of a part every cycle is read; against the whole file."""
 
 import math
+import shutil
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from cnc_ptp.recording.long_recording import extremes, read_for_report
 from cnc_ptp.recording.reader import read_recording
 from cnc_ptp.recording.rows import time_rows
 from cnc_ptp.recording.selection import selected
+from cnc_ptp.recording.settings import Settings, Split
 from cnc_ptp.recording.statistics import summary
 from cnc_ptp.recording.writer import Recording
 from cnc_ptp.wire.layout import Header, encode
@@ -168,3 +170,54 @@ def test_extremes_of_whole_numbers_keep_their_type():
     found = extremes(rows, ("line", "absent"), 2)
     assert found.dtype == rows.dtype
     assert found.tolist() == [(0, 1), (2, 4), (4, 9), (6, 6)]
+
+
+@pytest.fixture(scope="module")
+def parts(tmp_path_factory):
+    """The same run in parts of 2 s."""
+    path = tmp_path_factory.mktemp("parts") / "run"
+    smooth_run(path, SECONDS, settings=Settings(split=Split(seconds=2.0)))
+    assert len([*path.glob("*.mcap")]) == 4
+    return path
+
+
+def test_the_parts_of_a_folder_are_reduced_to_the_same(path, parts):
+    of_file, of_parts = (read_for_report(each, most_states=FEW) for each in (path, parts))
+    assert of_parts.states.keys() == of_file.states.keys()
+    for topic, rows in of_file.states.items():
+        assert all((rows[name] == of_parts.states[topic][name]).all() for name in rows.dtype.names)
+    for axis, rows in of_file.reduced.paths.items():
+        assert (rows == of_parts.reduced.paths[axis]).all()
+    assert summary(of_parts) == summary(of_file)
+    assert {name: info.count for name, info in of_parts.topics.items()} == {
+        name: info.count for name, info in of_file.topics.items()
+    }
+    assert (of_parts.machine_yaml, of_parts.complete, of_parts.path) == (of_file.machine_yaml, True, parts)
+
+
+@pytest.mark.parametrize("name", ["", "metadata.yaml"])
+def test_of_a_time_over_two_parts_every_cycle_is_read(path, parts, name):
+    part = selected(read_for_report(parts / name, 1.9, 2.1, most_states=math.inf), begin=1.9, end=2.1)
+    whole = selected(read_recording(path), begin=1.9, end=2.1)
+    assert part.reduced is None
+    assert part.states["/x/state"]["cycle"].tolist() == list(range(1900, 2100))
+    for topic, rows in whole.states.items():
+        assert all((rows[name] == part.states[topic][name]).all() for name in rows.dtype.names)
+
+
+def test_a_time_beyond_the_end_says_what_there_is(path, parts):
+    for each in (path, parts):
+        with pytest.raises(CncError) as refused:
+            selected(read_for_report(each, 20.0, 30.0, most_states=FEW), begin=20.0, end=30.0)
+        assert str(refused.value) == (
+            f"P-ERR-26011 recording {each}: nothing from 20 s to 30 s, it covers 0 s to 7.299 s; nothing was drawn"
+        )
+
+
+def test_a_part_that_was_not_closed_is_read_as_far_as_it_is_whole(parts, tmp_path):
+    copy = shutil.copytree(parts, tmp_path / "run")
+    last = copy / "run_3.mcap"
+    last.write_bytes(last.read_bytes()[:-3000])
+    reduced = read_for_report(copy, most_states=FEW)
+    assert (reduced.complete, reduced.missing) == (False, long_recording.NOT_CLOSED)
+    assert reduced.last_cycle >= 5999

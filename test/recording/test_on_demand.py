@@ -1,6 +1,8 @@
 """Recordings that begin and end while a machine runs, and snapshots: each can be computed again to the bit."""
 
 import math
+import resource
+from contextlib import suppress
 from functools import partial
 
 import pytest
@@ -12,11 +14,13 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.parameters import machine_text
 from cnc_ptp.protocol.blocks import CommandRecord, CycleTick, Event, EventValue, Severity, json_of
+from cnc_ptp.recording.closing import close_cut
 from cnc_ptp.recording.mcap_file import NOT_WRITTEN
 from cnc_ptp.recording.memory import BATCH, OBJECT, History, LastSeconds
 from cnc_ptp.recording.on_demand import OnDemand, Snapshots
 from cnc_ptp.recording.origin import RECORD_WHEN, WITHOUT
-from cnc_ptp.recording.reader import read_recording
+from cnc_ptp.recording.reader import iter_messages, read_recording
+from cnc_ptp.recording.recovery import recover
 from cnc_ptp.recording.settings import Settings, Split
 from cnc_ptp.recording.trigger import Condition
 from cnc_ptp.recording.verify import verify
@@ -367,3 +371,46 @@ def test_parts_are_written_on_demand_too(tmp_path):
     ]
     recorded, first, last = computed_again(tmp_path / "a")
     assert (first, last, recorded.attachments) == (200, 2699, {"scenario.yaml": SCENARIO})
+
+
+def test_a_recording_on_demand_that_was_cut_anywhere(tmp_path):
+    path, cut, saved = (tmp_path / f"{name}.mcap" for name in ("a", "cut", "saved"))
+    story = Story().run(0.3)
+    story.recorder.start(str(path))
+    story.run(1.5).stop().run(0.3)
+    story.recorder.close()
+    data, whole = path.read_bytes(), sum(1 for _ in iter_messages(path))
+    counts = []
+    for size in [*range(8, len(data), len(data) // 40), len(data)]:
+        cut.write_bytes(data[:size])
+        counts.append(recover(cut, saved).messages)
+        assert sum(1 for _ in iter_messages(cut)) == counts[-1]
+        if counts[-1]:
+            assert not verify(read_recording(saved), replay_blocks).differences
+        close_cut(cut)
+        assert sum(1 for _ in iter_messages(cut)) == counts[-1]
+    assert counts == sorted(counts) and counts[-1] == whole and len({*counts}) > 3
+
+
+def test_a_disk_that_gets_full_ends_a_recording_on_demand_and_nothing_else(tmp_path):
+    """The limit of a process in place of a small disk: SIGXFSZ is ignored in Python, the write fails."""
+    story = Story().run(0.3)
+    story.recorder.start(str(tmp_path / "a.mcap"))
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (120_000, limits[1]))
+    try:
+        with pytest.raises(CncError) as full:
+            story.run(20.0)
+        assert full.value.number == NOT_WRITTEN
+        with suppress(CncError):  # as RecorderNode does
+            story.recorder.fail()
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert story.recorder.current is None
+    recorded = read_recording(tmp_path / "a.mcap")
+    assert not recorded.complete and verify(recorded, replay_blocks).equal
+    story.run(0.05)  # the error has cut the block short in which it came
+    story.recorder.start(str(tmp_path / "b.mcap"))
+    story.run(0.5).stop().run(0.3)
+    story.recorder.close()
+    assert computed_again(tmp_path / "b.mcap")

@@ -20,11 +20,13 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.machine.wiring import build_units, unit_kinds
 from cnc_ptp.parameters import machine_text
 from cnc_ptp.plc.scenario import parse_scenario
-from cnc_ptp.protocol.blocks import PlcBlock
+from cnc_ptp.protocol.blocks import CycleTick, PlcBlock
 from cnc_ptp.recording.closing import close_cut_recording
+from cnc_ptp.recording.mcap_index import McapIndex
 from cnc_ptp.recording.offline_run import OfflineRun
 from cnc_ptp.recording.origin import origin, revision
 from cnc_ptp.recording.reader import STATE_TYPES, iter_messages, read_recording
+from cnc_ptp.recording.recovery import recover
 from cnc_ptp.recording.run_inputs import RunInputs
 from cnc_ptp.recording.settings import Settings, Split, read_split
 from cnc_ptp.recording.verify import verify
@@ -219,6 +221,80 @@ def test_a_folder_that_cannot_be_made_is_refused(tmp_path):
             f"P-ERR-26020 recording {path}: no folder for its parts: {reason}; nothing is recorded"
         )
     assert file.read_text() == "good"
+
+
+def recovered(folder, output):
+    result = CliRunner().invoke(main, ["recover", str(folder), "-o", str(output)])
+    return result.exit_code, result.output.splitlines()
+
+
+def test_a_folder_of_parts_is_recovered_part_by_part(parts, copy, tmp_path):
+    """The first part has a damaged chunk, the second is no recording, the third is missing, the last was cut."""
+    output = tmp_path / "saved"
+    index = McapIndex(copy / "run_0.mcap")
+    place = index.chunks[-1]
+    index.close()
+    data = bytearray((copy / "run_0.mcap").read_bytes())
+    data[place.offset + place.length // 2] ^= 0x55
+    (copy / "run_0.mcap").write_bytes(data)
+    (copy / "run_1.mcap").write_bytes(b"")
+    (copy / "run_2.mcap").unlink()
+    last = copy / "run_3.mcap"
+    last.write_bytes(last.read_bytes()[:-50_000])
+    status, [first, *lost] = recovered(copy / "metadata.yaml", output)
+    assert status == 0 and first.startswith(f"{output}: ") and len(lost) == 4
+    assert lost[0] == (
+        f"lost: run_1.mcap: recording {copy / 'run_1.mcap'}: not an MCAP file: it begins with '' instead of '\ufffdMCAP0\\r\\n'"
+    )
+    assert lost[1] == f"lost: run_2.mcap: recording {copy / 'run_2.mcap'}: cannot be opened: No such file or directory"
+    assert lost[2].startswith("lost: run_0.mcap: at offset ") and lost[3].startswith("lost: run_3.mcap: nothing whole ")
+    assert sorted(file.name for file in output.iterdir()) == ["metadata.yaml", "saved_0.mcap", "saved_1.mcap"]
+    saved = read_recording(output)
+    assert saved.machine_yaml and not saved.complete and saved.last_cycle > 3000
+    with Reader(output) as bag:
+        assert bag.message_count == sum(1 for _ in bag.messages()) == int(first.split()[-2])
+    assert sorted(file.name for file in copy.iterdir()) == ["metadata.yaml", "run_0.mcap", "run_1.mcap", "run_3.mcap"]
+
+
+def test_whole_parts_are_recovered_as_they_are(parts, tmp_path):
+    assert recovered(parts, tmp_path / "saved")[1] == [
+        f"{tmp_path / 'saved'}: {sum(1 for _ in iter_messages(parts))} messages"
+    ]
+    assert equal(states_of(parts), states_of(tmp_path / "saved"))
+    assert verify(read_recording(tmp_path / "saved"), replay_blocks).equal
+
+
+def test_parts_are_not_recovered_into_themselves_and_not_without_one_that_is_readable(copy, tmp_path):
+    for source in (copy, copy / "metadata.yaml"):
+        status, lines = recovered(source, copy)
+        assert status == 2 and f"would overwrite the recording {copy}" in " ".join(lines).replace("\n", "")
+    assert len([*copy.glob("*.mcap")]) == 4
+    for part in copy.glob("*.mcap"):
+        part.write_bytes(b"")
+    assert refusal(recover, copy, tmp_path / "saved").startswith(
+        f"P-ERR-26002 recording {copy / 'run_3.mcap'}: not an "
+    )
+    assert not (tmp_path / "saved").exists()
+
+
+def test_parts_of_which_the_last_was_cut_at_any_byte(tmp_path):
+    """The recorder was killed: the last part ends anywhere, the `metadata.yaml` lists the part before."""
+    folder = tmp_path / "run"
+    with Recording(folder, MACHINE, settings=Settings(split=Split(seconds=0.02)), chunk_seconds=0.01) as recording:
+        for first in range(0, 50, 10):
+            recording.tick(CycleTick(first, 10))
+            recording.flush()
+    names = sorted(path.name for path in folder.glob("*.mcap"))
+    last, whole = folder / names[-1], (folder / names[-1]).read_bytes()
+    before = sum(1 for _ in iter_messages(folder)) - sum(1 for _ in iter_messages(last))
+    counts = []
+    for size in [*range(8, len(whole), 211), len(whole)]:
+        last.write_bytes(whole[:size])
+        counts.append(recover(folder, tmp_path / "saved").messages)
+        assert sum(1 for _ in iter_messages(folder)) == counts[-1]
+        close_cut_recording(folder)
+        assert len(read_recording(folder).ticks) == counts[-1]
+    assert counts == sorted(counts) and counts[0] == before and counts[-1] > before
 
 
 @pytest.mark.parametrize(

@@ -25,7 +25,8 @@ from cnc_ptp.protocol.blocks import (
 )
 from cnc_ptp.recording.reader import Recorded
 from cnc_ptp.recording.rows import time_rows
-from cnc_ptp.recording.writer import Recording
+from cnc_ptp.recording.settings import Settings
+from cnc_ptp.recording.writer import AS_USUAL, Recording
 
 MACHINE = "/machine:\n  ros__parameters: {axes: [x, y, z], note: 'Fräse'}\n"
 EXTREMES = [0.0, -0.0, math.nan, math.inf, -math.inf, 5e-324, 1.7976931348623157e308]
@@ -133,9 +134,16 @@ def smooth_blocks(seconds: float, *, axes: tuple[str, ...] = ("x", "y", "z")) ->
     return blocks
 
 
-def smooth_run(path: Path, seconds: float = 2.0, *, axes: tuple[str, ...] = ("x", "y", "z"), text: str = "") -> None:
+def smooth_run(
+    path: Path,
+    seconds: float = 2.0,
+    *,
+    axes: tuple[str, ...] = ("x", "y", "z"),
+    text: str = "",
+    settings: Settings = AS_USUAL,
+) -> None:
     """A run as a machine would give it: a helix of radius 40 mm, the spindle runs up, some events and commands."""
-    with Recording(path, MACHINE) as recording:
+    with Recording(path, MACHINE, settings=settings) as recording:
         for name, block in smooth_blocks(seconds, axes=axes):
             if name == "plc":
                 recording.tick(CycleTick(block.first_cycle, 10))

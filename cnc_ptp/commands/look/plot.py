@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import inf
 from pathlib import Path
 
 from cnc_ptp.commands.look.report import program_of
@@ -13,7 +14,8 @@ from cnc_ptp.plots.recording_picture import Heading, draw_rows
 from cnc_ptp.plots.report import plots_page
 from cnc_ptp.plots.report_figures import time_range
 from cnc_ptp.recording.fields import chosen_rows, usual_rows
-from cnc_ptp.recording.reader import Recorded, read_recording
+from cnc_ptp.recording.long_recording import read_for_report
+from cnc_ptp.recording.reader import Recorded
 from cnc_ptp.recording.rows import PlotRow
 from cnc_ptp.recording.selection import NOT_RECORDED, selected
 from cnc_ptp.recording.statistics import axis_units, in_machine_order, torque_units
@@ -30,7 +32,7 @@ def plot(
     """Draws the fields `topics`, or the usual ones; without `output` RECORDING.svg next to the recording."""
     output = output or str(Path(recording).with_suffix(".svg"))
     check_picture(output, recording=recording)
-    whole = read_recording(recording)
+    whole = read_for_report(recording, begin, end, most_states=inf)  # every cycle: any field may be asked for
     program = program_of(whole)
     title = Path(program).name if program else whole.path.name
     recorded = in_machine_order(selected(whole, begin=begin, end=end, units=axes))

@@ -1,0 +1,34 @@
+"""`cnc_ptp replay` with changes: a recorded command that is refused now is named, one that was refused before is not."""
+
+from pathlib import Path
+
+from click.testing import CliRunner, Result
+from machine_support import ROOT
+
+from cnc_ptp import cli
+
+PTP = ROOT / "config" / "ptp.yaml"
+STORY = """
+- {at: 0.1, to: x, do: move_absolute, target: 20, velocity: 100}
+- {at: 0.5, to: y, do: move_absolute, target: 99999, velocity: 100}
+- {at: 1.0, to: x, do: move_absolute, target: 50, velocity: 100}
+"""
+
+
+def call(*arguments: object) -> Result:
+    return CliRunner().invoke(cli.main, [str(argument) for argument in arguments])
+
+
+def test_commands_that_are_refused_now_are_named(tmp_path: Path) -> None:
+    story, more, path = (tmp_path / name for name in ("story.yaml", "more.yaml", "run.mcap"))
+    story.write_text(STORY)
+    more.write_text("- {at: 0.8, to: x, do: power, enabled: off}\n")
+    assert call("simulate", PTP, "--scenario", story, "--duration", 2, "--record", path).exit_code == 0
+    result = call("replay", path, "--commands", more, "-o", tmp_path / "new.mcap")
+    assert result.exit_code == 0, result.output
+    notes = [line for line in result.output.splitlines() if "is refused" in line]
+    assert notes == [
+        "note: move_absolute to x at 1 s is refused: axis x: move_absolute refused: the axis is in Disabled, it must be in "
+        "Standstill; nothing was changed"
+    ]
+    assert "to x at 1 s" not in call("replay", path, "--override", 100, "-o", tmp_path / "same.mcap").output
