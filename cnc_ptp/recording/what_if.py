@@ -16,16 +16,16 @@ from cnc_ptp.machine.offline import OfflineMachine, Outputs
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters, load_machine
 from cnc_ptp.parameters.changed import changed_text
+from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.plc.scenario import Entry
-from cnc_ptp.protocol.blocks import ChannelBlock, Command, CommandRecord, CycleBlock, PlcBlock, json_of
+from cnc_ptp.protocol.blocks import ChannelBlock, Command, CommandRecord, CycleBlock
 from cnc_ptp.protocol.channel_states import ChannelStateCode
 from cnc_ptp.protocol.commands import COUPLINGS
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.recording.checkpoints import state_before
-from cnc_ptp.recording.reader import RawMessage
+from cnc_ptp.recording.recorded_answers import DelayedAnswers, RecordedAnswers
 from cnc_ptp.recording.run_inputs import RunInputs
 from cnc_ptp.state.other_parameters import change_parameters
-from cnc_ptp.wire.block_codec import codec_of
 
 TIME_OUTSIDE: Final = 26154
 NO_MACHINE: Final = 26155
@@ -74,7 +74,7 @@ class WhatIf:
         self.note = ""
         self.running: list[str] = []
         """Channels whose program has not ended so far."""
-        self._given = GivenByUnits(recorded, self.begin, self.begin - self._old.block_cycles)
+        self._answers = RecordedAnswers(recorded, self.begin, self._old.block_cycles)
 
     def run(self) -> Iterator[Outputs]:
         """All blocks from `begin` on. Raises CncError 26156 for parameters that make other parts of a unit."""
@@ -109,8 +109,7 @@ class WhatIf:
     def _recorded_commands(self) -> dict[int, list[CommandRecord]]:
         by_cycle: dict[int, list[CommandRecord]] = defaultdict(list)
         for record in self._recorded.commands:
-            switches_plc = record.command in PLC_SWITCHES
-            if (record.target != PLC or switches_plc) and not is_refused_coupling(record, self._old):
+            if record.target != PLC and not is_refused_coupling(record, self._old):
                 by_cycle[record.cycle].append(record)
         return by_cycle
 
@@ -125,7 +124,7 @@ class WhatIf:
             raise CncError(NO_LOAD, reason, NOTHING)
 
     def _at_begin(self) -> OfflineMachine:
-        """The machine as it was recorded before `begin`, with a PLC that serves what the recorded one served."""
+        """The machine as it was recorded before `begin`, with a PLC that answers as the recorded one did."""
         machine = OfflineMachine(self._old, build_units(self._old, end_when_idle=False))
         if self.begin:  # at 0 there is nothing to be restored
             state, why = state_before(self._recorded, self._old, self.begin)
@@ -135,14 +134,12 @@ class WhatIf:
                 machine.go_on_from(*state)
                 self.note = f"computed from the checkpoint at {state.next_cycle * self._cycle_time:g} s"
         while machine.next_cycle < self.begin:
-            given = [each for each in self._commands.get(machine.next_cycle, ()) if each.target != PLC]
+            given = self._commands.get(machine.next_cycle, ())
             machine.replay_tick(by_unit([Command.from_record(each) for each in given]))
-        plc = machine.runner(PLC)
-        for record in self._recorded.commands:
-            if record.target == PLC and record.command in PLC_SWITCHES and record.cycle < self.begin:
-                plc.command(Command.from_record(record))
-        plc.unit.take_events()
-        plc.unit.take_records()
+        plc = machine.runner(PLC).unit
+        assert isinstance(plc, PlcUnit)
+        plc.do_auto_acknowledge(self.begin, enabled=False)
+        plc.outside.append(DelayedAnswers(self._answers))
         return machine
 
     def _changed_commands(self, cycle: int) -> dict[str, list[Command]]:
@@ -158,7 +155,7 @@ class WhatIf:
 
     def _changed(self, record: CommandRecord) -> Command | None:
         change, command = self._change, Command.from_record(record)
-        if self._given.has(record):
+        if self._answers.gives(record):
             return None
         if change.override is not None and command.command == "set_override" and command.target in self._old.channels:
             return None
@@ -167,50 +164,7 @@ class WhatIf:
         return command
 
 
-Given = tuple[int, str, str, str]
-"""Cycle, target, name and arguments of a command."""
-ANSWERS: Final = ("acknowledge", "coupling_answer", "gear_changed")
 RESTING: Final = (int(ChannelStateCode.IDLE), int(ChannelStateCode.READY))
-PLC_SWITCHES: Final = ("auto_acknowledge", "serve")
-
-
-BLOCK_TYPES: Final[dict[str, type[ChannelBlock] | type[PlcBlock]]] = {
-    "cnc_ptp/msg/ChannelBlock": ChannelBlock,
-    "cnc_ptp/msg/PlcBlock": PlcBlock,
-}
-
-
-class GivenByUnits:
-    """Commands of channels, and the answers of the PLC to what channels and spindles ask for from `begin` on.
-
-    Units give them again. Blocks are read as far as the run has come.
-    """
-
-    def __init__(self, recorded: RunInputs, begin: int, before: int) -> None:
-        """`before`: the cycle of the block before; what is asked for in it is answered after it."""
-        self._begin = begin
-        self._known: set[Given] = set()
-        self._requests: set[int] = set()
-        self._reached = -1
-        self._messages = recorded.messages(BLOCK_TYPES, max(0, before))
-
-    def has(self, record: CommandRecord) -> bool:
-        while self._reached <= record.cycle and (message := next(self._messages, None)) is not None:
-            self._take(message)
-        return (record.cycle, record.target, record.command, record.arguments_json) in self._known
-
-    def _take(self, message: RawMessage) -> None:
-        block = codec_of(BLOCK_TYPES[message.type_name]).decode(message.cdr)
-        self._reached = block.first_cycle
-        if block.first_cycle + 2 * block.count <= self._begin:
-            return
-        is_channel = isinstance(block, ChannelBlock)
-        if is_channel:
-            self._requests.update(request.id for request in block.requests)
-        for command in block.commands if block.first_cycle >= self._begin else ():
-            known = command.command != "acknowledge" or command.arguments.get("id") in self._requests
-            if is_channel or (command.command in ANSWERS and known):
-                self._known.add((block.first_cycle, command.target, command.command, json_of(command.arguments)))
 
 
 def is_running(block: CycleBlock) -> bool:

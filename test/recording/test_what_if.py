@@ -6,14 +6,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hli_support import message
 from machine_support import ROOT
 from state_support import Run
 
 from cnc_ptp.commands.run.replay import end_of
 from cnc_ptp.commands.run.what_if import compute, what_if
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.wiring import build_units
+from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.parameters import machine_text
+from cnc_ptp.plc.hli.hli import Hli
+from cnc_ptp.plc.plc_unit import PlcUnit
+from cnc_ptp.protocol.blocks import Command
 from cnc_ptp.recording.mcap_file import McapFile
 from cnc_ptp.recording.offline_run import OfflineRun
 from cnc_ptp.recording.reader import Recorded, read_recording
@@ -34,15 +38,31 @@ RUNS = [
     Run("config/mill.yaml", "examples/tapping.nc"),
     Run("config/gantry.yaml", scenario="examples/figures/slave_gantry.yaml"),
     Run(SPINDLES + "two_channels.yaml", SPINDLES + "channel1.nc", SPINDLES + "two_channels_start.yaml"),
-]
+    # the PLC in a file: functions and gear changes that take their time, motions, homing, external setpoints
+    Run("config/mill.yaml", "examples/plc_tool_changer.nc", "examples/plc_tool_changer.yaml", plc="examples/plc_tool_changer.py"),
+    Run("config/ptp.yaml", scenario="examples/figures/plc_move_aborted.yaml", plc="examples/plc_move_axis.py"),
+    Run("examples/homing.yaml", plc="examples/plc_homing.py"),
+    Run("config/ptp.yaml", plc="examples/plc_setpoint_generator.py"),
+    # handshakes by a person
+    Run(SPINDLES + "gears.yaml", SPINDLES + "gears.nc", SPINDLES + "gears_plc.yaml"),
+    Run(SPINDLES + "plc_spindle.yaml", SPINDLES + "din.nc", SPINDLES + "plc.yaml"),
+    # trajectories, external setpoints, couplings, homing
+    Run("config/ptp.yaml", scenario="examples/trajectory.yaml"),
+    Run("config/ptp.yaml", scenario="examples/figures/ptp_external_setpoints.yaml"),
+    Run("config/ptp.yaml", scenario="examples/figures/slave_cam.yaml"),
+    Run("config/ptp.yaml", scenario="examples/figures/slave_cyclic.yaml"),
+    Run("config/ptp.yaml", scenario="examples/figures/slave_decoupling_0_5.yaml"),
+    Run("examples/sercos.yaml", scenario="examples/figures/ptp_drive_homing.yaml"),
+]  # fmt: skip
 
 
 def record(run: Run, path: Path, *, every: float = 1.0) -> Recorded:
     """The run with its checkpoints."""
     machine = run.parameters()
-    units = build_units(machine, scenario=run.entries(machine))
     text = machine_text(ROOT / run.machine)
-    with OfflineRun(machine, units, record=str(path), machine_text=text, checkpoint_seconds=every) as offline:
+    with OfflineRun(
+        machine, run.units(machine), record=str(path), machine_text=text, checkpoint_seconds=every
+    ) as offline:
         cycles = round(run.seconds * 1e6 / machine.cycle_time_us) if run.seconds else None
         for _ in offline.run(cycles=cycles):
             pass
@@ -58,16 +78,48 @@ def changed(recorded: Recorded, path: Path, change: Change) -> tuple[Recorded, s
 
 @pytest.mark.parametrize("run", RUNS, ids=lambda run: run.name)
 def test_a_run_without_a_change_is_the_recorded_one_from_anywhere(run: Run, tmp_path: Path) -> None:
-    recorded = record(run, tmp_path / "run.mcap")
+    require_the_same_from_anywhere(record(run, tmp_path / "run.mcap"), tmp_path)
+
+
+def require_the_same_from_anywhere(recorded: Recorded, folder: Path) -> None:
     duration = end_of(recorded) * recorded.cycle_time_ns * 1e-9
     for share in (0.0, 0.37, 0.8):
-        again, note = changed(recorded, tmp_path / f"again{share}.mcap", Change(share * duration))
+        again, note = changed(recorded, folder / f"again{share}.mcap", Change(share * duration))
         found = difference(recorded.path, again.path)
         assert found.parts_at is None, (share, note, [row for row in found.rows if row.parts_at is not None][:3])
         assert not share or duration * share < 1.0 or note.startswith("computed from the checkpoint at ")
         events = [event for event in recorded.events if event.cycle >= round(share * duration * 1000) + 20]
         texts = {(event.cycle, event.text) for event in again.events}
         assert all((event.cycle, event.text) in texts for event in events if event.source != "plc")
+
+
+def test_a_run_that_an_hli_and_a_jog_have_moved(tmp_path: Path) -> None:
+    """The HLI takes over the override and the functions of the channel, and acknowledges M8 after 0.3 s."""
+    run = Run("config/mill.yaml")
+    machine = run.parameters()
+    units, kinds = run.units(machine), unit_kinds(machine)
+    plc = units["plc"]
+    assert isinstance(plc, PlcUnit)
+    hli = Hli(plc, kinds=kinds, largest_overrides=dict.fromkeys(kinds, 100.0), timeout=0.5, numbers={})
+    path = tmp_path / "run.mcap"
+    text = machine_text(ROOT / run.machine)
+    with OfflineRun(machine, units, record=str(path), machine_text=text, checkpoint_seconds=1.0) as offline:
+        commands = {
+            5: Command("z", "jog", {"velocity": 5.0}),
+            45: Command("z", "jog", {"velocity": 0.0}),
+            60: Command("channel", "load", {"program": "hli.nc", "text": "G01 X20 F3000\nM8\nX40\nM30"}),
+            61: Command("channel", "start", {}),
+        }
+        for block in range(300):
+            done = [request.id for request in plc.requests_of("channel")] if block == 200 else []
+            served = {"override": 50.0 + block / 10, "functions": True, "done": done}
+            hli.take("channel", message("channel", "p1", block, **served), block * 0.01)
+            if block in commands:
+                plc.input(commands[block])
+            offline.step()
+    recorded = read_recording(path)
+    assert {"overlay", "jog", "acknowledge"} <= {each.command for each in recorded.commands if each.accepted}
+    require_the_same_from_anywhere(recorded, tmp_path)
 
 
 @pytest.fixture(scope="module")

@@ -42,8 +42,7 @@ def what_if(
         refused = compute(run, recorded, path)
         print(f"note: {run.note}" if run.note else "computed from 0 s")
         if recorded.plc_file:
-            text = "is not executed again; what it took time for is acknowledged at once"
-            print(f"note: the PLC {recorded.plc_file} {text}")
+            print(f"note: the PLC {recorded.plc_file} is not executed again; its commands are those of the recording")
         for text in refused:
             print(f"note: {text}")
         for channel in run.running:
