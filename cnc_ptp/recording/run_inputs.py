@@ -22,7 +22,7 @@ from cnc_ptp.recording.parts import files_of
 from cnc_ptp.recording.reader import COMMAND, STATE_TYPES, TICK, RawMessage, command_record
 from cnc_ptp.recording.writer import CHECKPOINT, CHECKPOINT_TEXT, MACHINE_FILE, PLC_FILE
 from cnc_ptp.wire.schemas import full_name
-from cnc_ptp.wire.ticks import decode_tick
+from cnc_ptp.wire.ticks import Tick, decode_tick
 
 
 class RunInputs:
@@ -32,7 +32,7 @@ class RunInputs:
     commands      in the order of their cycles
     checkpoints   cycles before which there is one
     plc_file      name of the PLC in a file that served the run, empty if none did
-    end           the cycle after the last one
+    begin, end    the first cycle whose blocks are recorded, and that after the last one
 
     Raises CncError 26001 to 26003, 26014, 26016 (newer format), 26018 (commands are missing).
     """
@@ -56,6 +56,7 @@ class RunInputs:
         self.plc_file = names[0].removeprefix(PLC_FILE) if names else ""
         commands = chain.from_iterable(part.commands() for part in self._parts)
         self.commands = sorted(commands, key=lambda record: record.cycle)
+        self.begin = min((tick.first_cycle for part in self._parts[:1] for tick in part.ticks(0)), default=0)
         self.end = self._end()
 
     def checkpoint(self, cycle: int) -> bytes:
@@ -99,7 +100,7 @@ class RunInputs:
         states: Counter[str] = Counter()
         for part in self._parts:
             states.update(dict(part.state_counts()))
-        ends = [end for part in self._parts for end in part.tick_ends()]
+        ends = [tick.first_cycle + tick.count for part in self._parts for tick in part.ticks(-1)]
         last_ns, confirmed = max(times, default=self.start_ns - 1), max([*states.values(), *ends], default=0)
         return min(max(0, last_ns - self.start_ns + self.cycle_time_ns) // self.cycle_time_ns, confirmed)
 
@@ -129,12 +130,12 @@ class _Part:
             if self._type_of(id) in STATE_TYPES:
                 yield self.index.channels[id].topic, count
 
-    def tick_ends(self) -> Iterator[int]:
-        """The cycles behind the last ticks."""
+    def ticks(self, place: int) -> Iterator[Tick]:
+        """Those of one of the chunks that have ticks, 0: the first, -1: the last one."""
         wanted = {id: TICK for id in self.index.channels if self._type_of(id) == TICK}
-        for message in self._in_order(self._chunks(wanted)[-1:], wanted):
-            tick = decode_tick(message.cdr)
-            yield tick.first_cycle + tick.count
+        chunks = self._chunks(wanted)
+        for message in self._in_order(chunks[place:][:1], wanted):
+            yield decode_tick(message.cdr)
 
     def _in_order(self, chunks: Sequence[ChunkPlace], wanted: Mapping[int, str]) -> Iterator[RawMessage]:
         """`wanted`: types by channel. Chunks of one time are merged."""

@@ -15,7 +15,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters, load_machine
-from cnc_ptp.parameters.changed import changed_text
+from cnc_ptp.parameters.changed import changed_text, read_changes
 from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import ChannelBlock, Command, CommandRecord, CycleBlock
@@ -64,8 +64,9 @@ class WhatIf:
         self.machine_text = recorded.machine_yaml
         self.machine = self._old
         if change.parameters:
-            self.machine_text = changed_text(recorded.machine_yaml, change.parameters)
-            self.machine = load_machine(self.machine_text, f"{recorded.path}:machine.yaml")
+            changes = read_changes(change.parameters, self._old)
+            self.machine_text = changed_text(recorded.machine_yaml, changes)
+            self.machine = load_machine(recorded.machine_yaml, f"{recorded.path}:machine.yaml", changes=changes)
         self._cycle_time = self._old.cycle_time_us * 1e-6
         self.begin = self._block_at(change.begin)
         self.end = recorded.end if change.end is None else self._end_at(change.end)
@@ -98,10 +99,13 @@ class WhatIf:
         return round(seconds / self._cycle_time)
 
     def _block_at(self, seconds: float) -> int:
-        """The first cycle of the block in which a time lies. Raises CncError 26154."""
-        duration = self._recorded.end * self._cycle_time
-        if not 0.0 <= seconds <= duration:
-            reason = f"--from {seconds:g} is not within the recorded time 0 ... {duration:g} s"
+        """The first cycle of the block in which a time lies. Raises CncError 26154.
+
+        Before the first block that is recorded nobody knows which commands were those of channels.
+        """
+        begin, duration = self._recorded.begin * self._cycle_time, self._recorded.end * self._cycle_time
+        if not begin <= seconds <= duration:
+            reason = f"--from {seconds:g} is not within the recorded time {begin:g} ... {duration:g} s"
             raise CncError(TIME_OUTSIDE, reason, NOTHING, value=seconds, limit=duration)
         count = self._old.block_cycles
         return round(seconds / self._cycle_time) // count * count

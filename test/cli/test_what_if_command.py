@@ -75,13 +75,13 @@ def test_a_changed_run_is_recorded_compared_and_laid_over_the_recorded_one(recor
     result = call("replay", recorded, "--from", 2, "--override", 50, "--to", 12, "-o", new, "--diff-page", page)
     assert result.exit_code == 0, result.output
     assert "note: computed from the checkpoint at 2 s" in result.output and "has not ended" not in result.output
-    assert "the runs part at 2.001 s" in result.output
+    assert "the runs part at 2 s" in result.output
     first, second = program_times(result.output)
     assert second == pytest.approx(2 * first, rel=0.05)  # but for ramps, at half the feed twice as long
     assert read_recording(new).metadata["what_if_of"] == "run.mcap"
     text = page.read_text()
-    assert "What differs" in text and "set path" in text and "actual path" in text and "new.mcap" in text
-    assert text.index("What differs") < text.index(">Paths<") < text.index(">Over time<")
+    assert "A set" in text and "B actual" in text and "B: new.mcap" in text
+    assert text.index(">Differences<") < text.index(">Path<") < text.index(">Over time<")
 
 
 def program_times(output: str) -> tuple[float, float]:
@@ -111,7 +111,9 @@ def test_another_program_and_further_commands(recorded: Path, tmp_path: Path) ->
 def test_diff_of_recordings(recorded: Path, tmp_path: Path) -> None:
     same = call("diff", recorded, recorded, "-o", tmp_path / "same.html")
     assert same.exit_code == 0 and "both runs are equal to the bit" in same.output
-    assert "Both runs are equal to the bit." in (tmp_path / "same.html").read_text()
+    assert "<b>never</b><span>set values part at</span>" in (tmp_path / "same.html").read_text()
+    part = call("diff", recorded, recorded, "--from", 1, "--to", 2, "-o", tmp_path / "part.html")
+    assert "compared from 1 s to 2 s" in part.output
     other = tmp_path / "ptp.mcap"
     ptp = ROOT / "config" / "ptp.yaml"
     assert call("simulate", ptp, "--duration", 0.1, "--record", other).exit_code == 0
@@ -135,8 +137,8 @@ def units_of(path: Path) -> str:
         (["--from", 2, "--to", 1], "P-ERR-26154 --to 1 is before --from 2; nothing was computed"),
         (
             ["--set", "x.getriebe.0.kw=1"],
-            "P-ERR-25005 {path}:machine.yaml:118:13: axis /x has no parameter 'getriebe.0.kw'; did you mean "
-            "getriebe[i].kv (P-AXIS-00099)?; the node does not start",
+            "P-ERR-26153 --set 'x.getriebe.0.kw=1': axis x has no parameter 'getriebe.0.kw'; did you mean "
+            "getriebe[i].kv (P-AXIS-00099)?; nothing was computed",
         ),
         (
             ["--set", "kv"],

@@ -17,13 +17,16 @@ from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.parameters import machine_text
 from cnc_ptp.plc.hli.hli import Hli
 from cnc_ptp.plc.plc_unit import PlcUnit
-from cnc_ptp.protocol.blocks import Command
+from cnc_ptp.protocol.blocks import ChannelBlock, Command
 from cnc_ptp.recording.mcap_file import McapFile
 from cnc_ptp.recording.offline_run import OfflineRun
 from cnc_ptp.recording.reader import Recorded, read_recording
+from cnc_ptp.recording.recorded_answers import CHANNEL_BLOCK
 from cnc_ptp.recording.run_difference import difference
 from cnc_ptp.recording.run_inputs import RunInputs
+from cnc_ptp.recording.trigger import Condition
 from cnc_ptp.recording.what_if import Change, WhatIf
+from cnc_ptp.wire.block_codec import codec_of
 
 SPINDLES = "examples/spindles/"
 OLD_KV = 5000
@@ -86,11 +89,21 @@ def require_the_same_from_anywhere(recorded: Recorded, folder: Path) -> None:
     for share in (0.0, 0.37, 0.8):
         again, note = changed(recorded, folder / f"again{share}.mcap", Change(share * duration))
         found = difference(recorded.path, again.path)
-        assert found.parts_at is None, (share, note, [row for row in found.rows if row.parts_at is not None][:3])
+        assert found.parts_at is None, (share, note, [row for row in found.rows if row.parted >= 0][:3])
         assert not share or duration * share < 1.0 or note.startswith("computed from the checkpoint at ")
+        require_equal_states(recorded, again)
         events = [event for event in recorded.events if event.cycle >= round(share * duration * 1000) + 20]
         texts = {(event.cycle, event.text) for event in again.events}
         assert all((event.cycle, event.text) in texts for event in events if event.source != "plc")
+
+
+def require_equal_states(recorded: Recorded, again: Recorded) -> None:
+    """All fields of all states, in the cycles of `again`."""
+    for topic, rows in again.states.items():
+        of_both = recorded.states[topic][np.isin(recorded.states[topic]["cycle"], rows["cycle"])]
+        assert len(rows) == len(of_both) > 0
+        for name in rows.dtype.names or ():
+            assert rows[name].tobytes() == of_both[name].tobytes(), (topic, name)
 
 
 def test_a_run_that_an_hli_and_a_jog_have_moved(tmp_path: Path) -> None:
@@ -177,10 +190,12 @@ def test_refusals(mill: Recorded, tmp_path: Path) -> None:
         "nothing was computed"
     )
     assert refusal(mill, Change(parameters=["u.kv=1"])) == (
-        "P-ERR-26153 --set 'u.kv=1' names the unit 'u', which the machine does not have. "
-        "Known: machine, channel, x, y, z, s; nothing was computed"
+        "P-ERR-26153 --set 'u.kv=1': the machine has no unit 'u'; nothing was computed"
     )
-    assert "has no parameter 'getriebe.0.kw'" in refusal(mill, Change(parameters=["x.getriebe.0.kw=1"]))
+    assert refusal(mill, Change(parameters=["x.getriebe.0.kv=fast"])) == (
+        "P-ERR-26153 --set 'x.getriebe.0.kv=fast': axis list, P-AXIS-00099 getriebe[0].kv of /x: value 'fast' is text, "
+        "an integer is needed; nothing was computed"
+    )
     assert refusal(mill, Change(2.0, program={})) == (
         "P-ERR-26157 --program takes the place of a program that is loaded after --from, and the last one is loaded "
         "at 0 s; nothing was computed"
@@ -209,4 +224,67 @@ def test_the_command_prints_where_the_runs_part(mill: Recorded, capsys: pytest.C
         diff=False,
     )  # fmt: skip
     printed = capsys.readouterr().out
-    assert status == 0 and "computed from the checkpoint at 3 s" in printed and "the runs part at 3.0" in printed
+    assert status == 0 and "computed from the checkpoint at 3 s" in printed and "the runs part at 3 s" in printed
+
+
+@pytest.mark.parametrize("change", ["machine.cycle_time_us=2000", "machine.block_cycles=5"])
+def test_the_cycle_is_that_of_the_recording(change: str, mill: Recorded, tmp_path: Path) -> None:
+    with pytest.raises(CncError) as refused:
+        changed(mill, tmp_path / "other.mcap", Change(2.0, parameters=[change]))
+    assert str(refused.value) == (
+        "P-ERR-26156 other parameters would give the machine another cycle time or other cycle blocks; "
+        "nothing was computed"
+    )
+
+
+def test_a_recording_that_begins_late_is_computed_from_its_first_block_on(tmp_path: Path) -> None:
+    """Before it nobody knows which of the recorded commands were those of channels."""
+    run = Run("config/mill.yaml", "examples/tapping.nc")
+    machine = run.parameters()
+    path = tmp_path / "late.mcap"
+    text = machine_text(ROOT / run.machine)
+    condition = Condition("z.set_velocity < 0", unit_kinds(machine))
+    with OfflineRun(machine, run.units(machine), record=str(path), machine_text=text, condition=condition) as offline:
+        for _ in offline.run():
+            pass
+    recorded = read_recording(path)
+    with RunInputs(path) as inputs:
+        begin, end = inputs.begin * 1e-3, inputs.end * 1e-3
+    assert 0.0 < begin < 1.0
+    assert refusal(recorded, Change()) == (
+        f"P-ERR-26154 --from 0 is not within the recorded time {begin:g} ... {end:g} s; nothing was computed"
+    )
+    again, _ = changed(recorded, tmp_path / "again.mcap", Change(begin))
+    assert difference(path, again.path).parts_at is None
+
+
+def test_a_function_takes_as_long_as_in_the_recording_whenever_it_comes(tmp_path: Path) -> None:
+    """M8 is acknowledged by hand. With half of the feed it comes later; what is new is acknowledged at once."""
+    (tmp_path / "hand.nc").write_text("G01 X20 F2400\nM8\nX0\nM30\n")
+    (tmp_path / "hand.yaml").write_text(
+        "- {at: 0, to: plc, do: auto_acknowledge, enabled: off}\n- {at: 1.5, to: plc, do: acknowledge, id: 1}\n"
+    )
+    recorded = record(
+        Run("config/mill.yaml", str(tmp_path / "hand.nc"), str(tmp_path / "hand.yaml")), tmp_path / "r.mcap"
+    )
+    ((begun, delay),) = delays(recorded.path)
+    assert delay > 500
+    slow, _ = changed(recorded, tmp_path / "slow.mcap", Change(0.1, end=5.0, override=50.0))
+    ((later, same),) = delays(slow.path)
+    assert later > begun + 300 and same == delay
+    program = {"program": "other.nc", "text": "G01 X20 F2400\nM8\nM9\nX0\nM30"}
+    other, _ = changed(recorded, tmp_path / "other.mcap", Change(program=program, end=5.0))
+    assert [taken for _, taken in delays(other.path)] == [delay, 10]
+
+
+def delays(path: Path) -> list[tuple[int, int]]:
+    """First cycle of each block with a request, and the cycles to its acknowledgement."""
+    with RunInputs(path) as inputs:
+        blocks = [codec_of(ChannelBlock).decode(message.cdr) for message in inputs.messages([CHANNEL_BLOCK])]
+        done = {
+            Command.from_record(record).arguments["id"]: record.cycle
+            for record in inputs.commands
+            if record.command == "acknowledge" and record.accepted
+        }
+    asked = [(request.id, block.first_cycle) for block in blocks for request in block.requests]
+    return [(cycle, done[number] - cycle) for number, cycle in asked]
