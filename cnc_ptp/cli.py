@@ -369,6 +369,9 @@ def check_command(**options: Any) -> None:
 @click.option("--publish", is_flag=True, help="Publish the recorded topics again.")
 @click.option("--rate", type=RATE, default=1.0, show_default=True, help="Factor for --publish, 1 = real time.")
 @click.option("--inputs", is_flag=True, help="Publish PLC inputs too: a machine on this ROS domain acts on them.")
+@click.option(
+    "--checkpoints", type=POSITIVE, metavar="S", help="Compute it once and keep its state every S seconds beside it."
+)
 @click.option("--from", "begin", type=DURATION, help="What if: changes count from this time on, s.")
 @click.option("--to", "end", type=DURATION, help="What if: to this time, s.")
 @click.option("--set", "parameters", multiple=True, metavar="UNIT.NAME=VALUE", help="What if: another parameter.")
@@ -386,8 +389,9 @@ def replay_command(**options: Any) -> None:
     names = ("begin", "end", "parameters", "override", "program", "commands", "output", "diff", "page")
     changes = {name: options.pop(name) for name in names}
     if any(value not in (None, (), False) for value in changes.values()):
-        if options["verify"] or options["publish"]:
-            raise click.UsageError("--verify and --publish do not go with a changed run; nothing was replayed")
+        if options["verify"] or options["publish"] or options.pop("checkpoints") is not None:
+            others = "--verify, --publish and --checkpoints"
+            raise click.UsageError(f"{others} do not go with a changed run; nothing was replayed")
         from cnc_ptp.commands.run.what_if import what_if
 
         changes["begin"] = changes["begin"] or 0.0

@@ -57,6 +57,8 @@ class McapIndex(RecordReader):
         self.metadata: list[Metadata] = []
         self.attachments: dict[str, int] = {}
         """Offsets by name."""
+        self._chunk_count = -1
+        """What the summary says; -1: nothing."""
         try:
             self._file = os.open(path, os.O_RDONLY)
             self._size = os.fstat(self._file).st_size
@@ -69,7 +71,7 @@ class McapIndex(RecordReader):
         """The file has a summary: it was closed."""
         if summary is not None:
             self._read_summary(summary)
-        if not self.chunks:
+        if not self.chunks and self._chunk_count != 0:
             self._scan()
 
     def close(self) -> None:
@@ -143,7 +145,8 @@ class McapIndex(RecordReader):
         for record in self._summary_records(start):
             self._take_name(record)
             if record.opcode == Opcode.STATISTICS:
-                self.counts = self.parse(Statistics.read, record).channel_message_counts
+                statistics = self.parse(Statistics.read, record)
+                self.counts, self._chunk_count = statistics.channel_message_counts, statistics.chunk_count
             elif record.opcode == Opcode.CHUNK_INDEX:
                 self.chunks.append(self._chunk_place(record))
             elif record.opcode == Opcode.METADATA_INDEX:

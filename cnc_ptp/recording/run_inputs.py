@@ -8,13 +8,18 @@ from __future__ import annotations
 import heapq
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from hashlib import blake2b
 from itertools import chain
 from pathlib import Path
 from types import TracebackType
+from typing import Final
 
 from mcap_ros2.decoder import DecoderFactory
 
+from cnc_ptp.errors import CncError
+from cnc_ptp.parameters import MachineParameters, load_machine
 from cnc_ptp.protocol.blocks import CommandRecord
+from cnc_ptp.recording.bag import FILE
 from cnc_ptp.recording.mcap_file import METADATA
 from cnc_ptp.recording.mcap_index import ChunkPlace, McapIndex
 from cnc_ptp.recording.origin import require_computable, require_known_format
@@ -24,13 +29,24 @@ from cnc_ptp.recording.writer import CHECKPOINT, CHECKPOINT_TEXT, MACHINE_FILE, 
 from cnc_ptp.wire.schemas import full_name
 from cnc_ptp.wire.ticks import Tick, decode_tick
 
+CHECKPOINTS_OF: Final = "cnc_ptp.checkpoints"
+"""Metadata of a file beside a recording: the run that its checkpoints are of."""
+NO_MACHINE: Final = 26155
+
+
+def checkpoint_file(recording: Path) -> Path:
+    """Where the checkpoints of a recording are that it does not have itself."""
+    root = recording.parent if recording.name == FILE else recording
+    return root.with_name(f"{root.name}.checkpoints")
+
 
 class RunInputs:
     """An open recording, in one file or in parts; it is closed at the end of a `with` block.
 
     machine_yaml  empty if it has none
     commands      in the order of their cycles
-    checkpoints   cycles before which there is one
+    checkpoints   cycles before which there is one, also in the file beside the recording
+    beside        why the file beside it does not count, empty if it does or if there is none
     plc_file      name of the PLC in a file that served the run, empty if none did
     begin, end    the first cycle whose blocks are recorded, and that after the last one
 
@@ -40,6 +56,7 @@ class RunInputs:
     def __init__(self, path: str | Path) -> None:
         self.path = Path(path)
         self._parts = [_Part(file) for file in files_of(self.path)]
+        self._beside: list[_Part] = []
         values: dict[str, str] = {}
         for metadata in chain.from_iterable(part.index.metadata for part in self._parts):
             if metadata.name == METADATA:
@@ -50,14 +67,30 @@ class RunInputs:
         self.cycle_time_ns = int(values.get("cycle_time_ns", "1000000"))
         self._attachments = {name: part for part in self._parts for name in part.index.attachments}
         self.machine_yaml = self._attached(MACHINE_FILE).decode(errors="replace")
+        commands = chain.from_iterable(part.commands() for part in self._parts)
+        self.commands = sorted(commands, key=lambda record: record.cycle)
+        self.beside = self._take_beside(checkpoint_file(self.path))
         numbers = [name.removeprefix(CHECKPOINT) for name in self._attachments if name.startswith(CHECKPOINT)]
         self.checkpoints = sorted(int(number) for number in numbers if number.isdecimal())
         names = [name for name in self._attachments if name.startswith(PLC_FILE)]
         self.plc_file = names[0].removeprefix(PLC_FILE) if names else ""
-        commands = chain.from_iterable(part.commands() for part in self._parts)
-        self.commands = sorted(commands, key=lambda record: record.cycle)
         self.begin = min((tick.first_cycle for part in self._parts[:1] for tick in part.ticks(0)), default=0)
         self.end = self._end()
+
+    def required_machine(self) -> MachineParameters:
+        """Raises CncError 26155 where there is no machine file, ParameterError for one that is wrong."""
+        if not self.machine_yaml:
+            reason = f"recording {self.path}: holds no attachment machine.yaml"
+            raise CncError(NO_MACHINE, reason, "nothing was computed, record it with cnc_ptp")
+        return load_machine(self.machine_yaml, f"{self.path}:{MACHINE_FILE}")
+
+    def run_id(self) -> str:
+        """A digest of all that decides the run: the machine and the commands."""
+        digest = blake2b(self.machine_yaml.encode(errors="surrogatepass"), digest_size=16)
+        for record in self.commands:
+            words = (record.cycle, record.target, record.command, record.accepted, record.arguments_json)
+            digest.update(repr(words).encode(errors="surrogatepass"))
+        return digest.hexdigest()
 
     def checkpoint(self, cycle: int) -> bytes:
         """The state before one of the cycles of `checkpoints`."""
@@ -76,7 +109,7 @@ class RunInputs:
         return chain.from_iterable(part.messages(types, from_ns) for part in self._parts)
 
     def close(self) -> None:
-        for part in self._parts:
+        for part in [*self._parts, *self._beside]:
             part.index.close()
 
     def __enter__(self) -> RunInputs:
@@ -86,6 +119,21 @@ class RunInputs:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+
+    def _take_beside(self, file: Path) -> str:
+        """The attachments of the file beside the recording, those of the recording itself before them."""
+        if not file.is_file():
+            return ""
+        try:
+            part = _Part(file)
+        except CncError as error:
+            return str(error)
+        self._beside.append(part)
+        runs = [each.metadata.get("run") for each in part.index.metadata if each.name == CHECKPOINTS_OF]
+        if runs != [self.run_id()]:
+            return f"{file} has the checkpoints of another run"
+        self._attachments = dict.fromkeys(part.index.attachments, part) | self._attachments
+        return ""
 
     def _attached(self, name: str) -> bytes:
         """Empty if there is none of this name."""

@@ -6,29 +6,27 @@ of the recording come at their cycles, whatever the changed run does.
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
-from cnc_ptp.machine.wiring import build_units
-from cnc_ptp.parameters import MachineParameters, load_machine
+from cnc_ptp.parameters import load_machine
 from cnc_ptp.parameters.changed import changed_text, read_changes
 from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import ChannelBlock, Command, CommandRecord, CycleBlock
 from cnc_ptp.protocol.channel_states import ChannelStateCode
-from cnc_ptp.protocol.commands import COUPLINGS
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.recording.checkpoints import state_before
+from cnc_ptp.recording.computed_again import by_unit, commands_by_cycle, computed_again, fresh_machine
 from cnc_ptp.recording.recorded_answers import DelayedAnswers, RecordedAnswers
 from cnc_ptp.recording.run_inputs import RunInputs
 from cnc_ptp.state.other_parameters import change_parameters
 
 TIME_OUTSIDE: Final = 26154
-NO_MACHINE: Final = 26155
 NO_LOAD: Final = 26157
 NOTHING: Final = "nothing was computed"
 
@@ -56,11 +54,8 @@ class WhatIf:
 
     def __init__(self, recorded: RunInputs, change: Change) -> None:
         """`recorded` stays open as long as it runs. Raises ParameterError, CncError 26153, 26154, 26155, 26157."""
-        if not recorded.machine_yaml:
-            reason = f"recording {recorded.path}: holds no attachment machine.yaml"
-            raise CncError(NO_MACHINE, reason, f"{NOTHING}, record it with cnc_ptp")
         self._recorded, self._change = recorded, change
-        self._old = load_machine(recorded.machine_yaml, f"{recorded.path}:machine.yaml")
+        self._old = recorded.required_machine()
         self.machine_text = recorded.machine_yaml
         self.machine = self._old
         if change.parameters:
@@ -70,7 +65,7 @@ class WhatIf:
         self._cycle_time = self._old.cycle_time_us * 1e-6
         self.begin = self._block_at(change.begin)
         self.end = recorded.end if change.end is None else self._end_at(change.end)
-        self._commands = self._recorded_commands()
+        self._commands = commands_by_cycle(recorded.commands, self._old)
         self._require_load()
         self.note = ""
         self.running: list[str] = []
@@ -83,7 +78,7 @@ class WhatIf:
         if self.machine is not self._old:
             runners, blocks = machine.parts
             change_parameters(runners, self._old, self.machine)
-            changed = OfflineMachine(self.machine, build_units(self.machine, end_when_idle=False))
+            changed = fresh_machine(self.machine)
             changed.go_on_from(machine.next_cycle, runners, blocks)
             machine = changed
         while machine.next_cycle < self.end:
@@ -110,13 +105,6 @@ class WhatIf:
         count = self._old.block_cycles
         return round(seconds / self._cycle_time) // count * count
 
-    def _recorded_commands(self) -> dict[int, list[CommandRecord]]:
-        by_cycle: dict[int, list[CommandRecord]] = defaultdict(list)
-        for record in self._recorded.commands:
-            if record.target != PLC and not is_refused_coupling(record, self._old):
-                by_cycle[record.cycle].append(record)
-        return by_cycle
-
     def _require_load(self) -> None:
         """Raises CncError 26157 where there is no program to be replaced."""
         if self._change.program is None:
@@ -129,7 +117,7 @@ class WhatIf:
 
     def _at_begin(self) -> OfflineMachine:
         """The machine as it was recorded before `begin`, with a PLC that answers as the recorded one did."""
-        machine = OfflineMachine(self._old, build_units(self._old, end_when_idle=False))
+        machine = fresh_machine(self._old)
         if self.begin:  # at 0 there is nothing to be restored
             state, why = state_before(self._recorded, self._old, self.begin)
             if state is None:
@@ -137,9 +125,7 @@ class WhatIf:
             else:
                 machine.go_on_from(*state)
                 self.note = f"computed from the checkpoint at {state.next_cycle * self._cycle_time:g} s"
-        while machine.next_cycle < self.begin:
-            given = self._commands.get(machine.next_cycle, ())
-            machine.replay_tick(by_unit([Command.from_record(each) for each in given]))
+        deque(computed_again(machine, self._commands, self.begin), maxlen=0)
         plc = machine.runner(PLC).unit
         assert isinstance(plc, PlcUnit)
         plc.do_auto_acknowledge(self.begin, enabled=False)
@@ -174,15 +160,3 @@ RESTING: Final = (int(ChannelStateCode.IDLE), int(ChannelStateCode.READY))
 def is_running(block: CycleBlock) -> bool:
     """A channel whose program has not ended."""
     return isinstance(block, ChannelBlock) and int(block.state[-1]) not in RESTING
-
-
-def by_unit(commands: Sequence[Command]) -> dict[str, list[Command]]:
-    units: dict[str, list[Command]] = defaultdict(list)
-    for command in commands:
-        units[command.target].append(command)
-    return units
-
-
-def is_refused_coupling(record: CommandRecord, machine: MachineParameters) -> bool:
-    """It changed nothing, and the PLC's reason is not recorded: fed in again, it might be carried out."""
-    return not record.accepted and record.command in COUPLINGS and record.target in machine.axes

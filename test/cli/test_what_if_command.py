@@ -18,7 +18,7 @@ from cnc_ptp.state.faults import not_storable
 
 MILL = ROOT / "config" / "mill.yaml"
 PROGRAM = "G01 X50 Y20 F2400\nX0\nX50 Y0\nX0\nM30\n"
-WITHOUT = "the recording has no checkpoints, as none has that was made in the graph or without them"
+WITHOUT = "the recording has no checkpoints; cnc_ptp replay --checkpoints makes them, once"
 
 
 def call(*arguments: object) -> Result:
@@ -165,7 +165,7 @@ def test_an_override_outside_is_refused(recorded: Path) -> None:
 def test_verify_does_not_go_with_a_change(recorded: Path) -> None:
     result = call("replay", recorded, "--verify", "--from", 1)
     assert result.exit_code == 2
-    assert "--verify and --publish do not go with a changed run; nothing was replayed" in result.output
+    assert "--verify, --publish and --checkpoints do not go with a changed run; nothing was replayed" in result.output
 
 
 def test_a_state_of_other_sources_is_passed_over(recorded: Path, monkeypatch: pytest.MonkeyPatch) -> None:
