@@ -70,9 +70,9 @@ def state_before(recorded: RunInputs, machine: MachineParameters, cycle: int) ->
         return None, recorded.beside or NO_CHECKPOINTS
     store, why = StateStore(machine), ""
     store.texts.update(recorded.checkpoint_texts())
-    for first in sorted((first for first in recorded.checkpoints if first <= cycle), reverse=True):
+    for read in recorded.states_before(cycle):
         try:
-            return store.restore(recorded.checkpoint(first)), why
+            return store.restore(read()), why
         except CncError as error:
             if error.number not in (DAMAGED, OTHER_VERSION, CORRUPT):
                 raise

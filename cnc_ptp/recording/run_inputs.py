@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import heapq
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from functools import partial
 from hashlib import blake2b
 from itertools import chain
 from pathlib import Path
@@ -92,9 +93,13 @@ class RunInputs:
             digest.update(repr(words).encode(errors="surrogatepass"))
         return digest.hexdigest()
 
-    def checkpoint(self, cycle: int) -> bytes:
-        """The state before one of the cycles of `checkpoints`."""
-        return self._attached(f"{CHECKPOINT}{cycle}")
+    def states_before(self, cycle: int) -> Iterator[Callable[[], bytes]]:
+        """Reads the checkpoints at or before a cycle, the newest first; each may raise CncError 26003."""
+        for first in sorted((first for first in self.checkpoints if first <= cycle), reverse=True):
+            name = f"{CHECKPOINT}{first}"
+            for part in [*self._beside, *self._parts]:
+                if name in part.index.attachments:
+                    yield partial(part.index.attached, name)
 
     def checkpoint_texts(self) -> dict[str, str]:
         """Long texts of the states by their digests."""
@@ -121,7 +126,7 @@ class RunInputs:
         self.close()
 
     def _take_beside(self, file: Path) -> str:
-        """The attachments of the file beside the recording, those of the recording itself before them."""
+        """The attachments of the file beside the recording; why they do not count."""
         if not file.is_file():
             return ""
         try:
