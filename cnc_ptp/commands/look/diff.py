@@ -14,6 +14,9 @@ from cnc_ptp.recording.difference import RUN
 from cnc_ptp.recording.run_difference import RunDifference, difference
 from cnc_ptp.recording.selection import selected
 
+WIDTH = 100
+"""Columns that the table has at least: where it is no terminal, nobody cuts it."""
+
 
 def diff(first: str, second: str, output: str | None, begin: float | None = None, end: float | None = None) -> int:
     """Prints where the runs part; `output`: a page of both."""
@@ -64,4 +67,5 @@ def print_difference(found: RunDifference) -> None:
         numbers = [f"{value:.6g}" for value in (row.first, row.second, row.largest)]
         times = [f"{cycle * found.cycle_time:.3f}" for cycle in (row.cycle, row.parted)]
         table.add_row(row.unit, row.field.replace("_", " "), *numbers, *times)
+    console.width = max(console.width, WIDTH)
     console.print(table)
