@@ -10,6 +10,7 @@ from click.testing import CliRunner, Result
 from machine_support import ROOT
 
 from cnc_ptp import cli
+from cnc_ptp.recording.mcap_file import METADATA, McapFile
 from cnc_ptp.recording.mcap_index import McapIndex
 from cnc_ptp.recording.reader import read_recording
 from cnc_ptp.recording.run_inputs import RunInputs
@@ -217,3 +218,46 @@ def test_a_plc_in_a_file_is_kept_and_a_note_says_that_it_is_not_executed(tmp_pat
     assert "note: the PLC plc_homing.py is not executed again; its commands are those of the recording" in result.output
     assert "note: computed from the checkpoint at 2 s" in result.output
     assert "both runs are equal to the bit" in result.output
+
+
+def foreign(path: Path, metadata: dict[str, str] | None = None) -> Path:
+    """An MCAP file without machine and blocks."""
+    with McapFile(path, describe=lambda _path, _information: None) as file:
+        if metadata is not None:
+            file.metadata(METADATA, metadata)
+    return path
+
+
+WHAT_IF, STORE, DIFF = ["replay", "{path}", "--from", 1], ["replay", "{path}", "--checkpoints", 1], ["diff", "{path}"]
+
+
+@pytest.mark.parametrize("words", [WHAT_IF, STORE, DIFF], ids=lambda words: " ".join(map(str, words)))
+def test_files_that_are_no_recordings_of_this_version(words: list[object], recorded: Path, tmp_path: Path) -> None:
+    def told(path: Path) -> str:
+        given = [str(word).replace("{path}", str(path)) for word in words]
+        return last_line(call(*given, *([recorded] if words is DIFF else [])))
+
+    future = foreign(tmp_path / "future.mcap", {"format": "99", "version": "9.0"})
+    assert told(future) == (
+        f"P-ERR-26016 recording {future}: has format 99 of cnc_ptp 9.0, this version reads up to format 1; nothing was "
+        "read, use a newer version of cnc_ptp"
+    )
+    other = foreign(tmp_path / "other.mcap")
+    without = (
+        "P-ERR-26011 recording {}: holds no attachment 'machine.yaml'; nothing was read"
+        if words is DIFF
+        else "P-ERR-26155 recording {}: holds no attachment machine.yaml; nothing was computed, record it with cnc_ptp"
+    )
+    assert told(other) == without.format(other)
+    text = tmp_path / "text.mcap"
+    text.write_text("no recording, but long enough for one")
+    assert told(text).startswith(f"P-ERR-26002 recording {text}: not an MCAP file: ")
+    missing = tmp_path / "missing.mcap"
+    assert told(missing).startswith(f"P-ERR-26001 recording {missing}")
+
+
+@pytest.mark.parametrize("option", ["--program", "--commands"])
+def test_inputs_that_cannot_be_read(option: str, recorded: Path, tmp_path: Path) -> None:
+    new = tmp_path / "new.mcap"
+    assert last_line(call("replay", recorded, option, tmp_path / "none", "-o", new)).startswith("P-ERR-26110 ")
+    assert not new.exists()
