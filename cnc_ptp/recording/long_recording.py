@@ -20,6 +20,7 @@ from cnc_ptp.recording.bag import FILE
 from cnc_ptp.recording.mcap_chunks import MessageRun, RawRecord
 from cnc_ptp.recording.mcap_index import ChunkPlace, McapIndex
 from cnc_ptp.recording.opened import WORKERS, ahead
+from cnc_ptp.recording.origin import require_own
 from cnc_ptp.recording.reader import (
     AXIS_STATE,
     CHANNEL_STATE,
@@ -102,6 +103,13 @@ def read_for_report(
         return _read(index, begin, end, most_states)
     finally:
         index.close()
+
+
+def read_own(path: str | Path, begin: float | None, end: float | None) -> Recorded:
+    """The same. Raises besides CncError 26017 for a recording of another program."""
+    recorded = read_for_report(path, begin, end)
+    require_own(recorded.path, recorded.metadata, recorded.states)
+    return recorded
 
 
 def _read(index: McapIndex, begin: float | None, end: float | None, most_states: int) -> Recorded:

@@ -8,9 +8,9 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
-from cnc_ptp.commands.look.report import read_own
 from cnc_ptp.commands.output_file import check_page, write_output
 from cnc_ptp.recording.difference import RUN
+from cnc_ptp.recording.long_recording import read_own
 from cnc_ptp.recording.run_difference import RunDifference, difference
 from cnc_ptp.recording.selection import selected
 
