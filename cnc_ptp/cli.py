@@ -247,6 +247,8 @@ def replay_command(**options: Any) -> None:
 @main.command("diff")
 @click.argument("first", type=click.Path(dir_okay=False))
 @click.argument("second", type=click.Path(dir_okay=False))
+@click.option("--from", "begin", type=float, help="Seconds of the run; without it from the start of both.")
+@click.option("--to", "end", type=float, help="Seconds of the run; without it to the end.")
 @click.option("--output", "-o", type=click.Path(dir_okay=False), help="Page of both runs on top of each other (.html).")
 def diff_command(**options: Any) -> None:
     """Compare two recorded runs of a machine, also as a page."""
@@ -261,10 +263,10 @@ def diff_command(**options: Any) -> None:
 @click.option("--compare", type=click.Path(dir_okay=False), help="Another recording, drawn on top of this one.")
 @click.option(
     "--align",
-    type=click.Choice(("program", "start")),
+    type=click.Choice(("program", "start", "run")),
     default="program",
     show_default=True,
-    help="With --compare: starts of the programs, or of the recordings, at the same time.",
+    help="With --compare: starts of the programs, of the recordings, or of the runs at the same time.",
 )
 @click.option("-o", "--output", required=True, type=click.Path(dir_okay=False), help="HTML file to write.")
 def report_command(**options: Any) -> None:

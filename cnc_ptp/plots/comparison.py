@@ -132,11 +132,15 @@ def _paths(pair: Sequence[Recorded], units: dict[str, str]) -> str:
     )
     if len(common) < 2 or not on_path:
         return ""
-    runs = [(letter, recorded, colour.set) for letter, recorded, colour in zip(LETTERS, pair, PAIRS, strict=True)]
+    runs = [
+        (f"{letter} {which}", recorded, getattr(colour, which), f"{which}_position")
+        for letter, recorded, colour in zip(LETTERS, pair, PAIRS, strict=True)
+        for which in ("set", "actual")
+    ]
     figures: list[go.Figure] = figures_of_runs(runs, common)
     plots = "".join(f"<div>{plot_div(figure, f'path{number}')}</div>" for number, figure in enumerate(figures))
     style = "paths two" if len(figures) > 1 else "paths"
-    return section("Path", f'<div class="{style}">{plots}</div>', "Actual positions of A and B.")
+    return section("Path", f'<div class="{style}">{plots}</div>', "Set and actual positions of A and B.")
 
 
 def merged(pair: Sequence[Recorded]) -> Recorded:

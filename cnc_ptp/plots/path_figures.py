@@ -68,15 +68,16 @@ def actual_path_figures(recorded: Recorded, units: Mapping[str, str]) -> list[go
     """The actual path, coloured by feed or following error. None if no channel moves along a path."""
     axes = path_axes(recorded, units)
     on_path = any(np.any(rows["path_velocity"]) for rows in recorded.of_type(CHANNEL_STATE).values())
-    return path_figures(_actual_path(recorded, axes), axes) if len(axes) >= 2 and on_path else []
+    return path_figures(_path(recorded, axes), axes) if len(axes) >= 2 and on_path else []
 
 
-def _actual_path(recorded: Recorded, axes: Sequence[str]) -> Path:
+def _path(recorded: Recorded, axes: Sequence[str], field: str = "actual_position") -> Path:
+    """`field`: which positions."""
     states = [
         (recorded.of_type(AXIS_STATE) if recorded.reduced is None else recorded.reduced.paths)[name] for name in axes
     ]
     length = min(len(rows) for rows in states)
-    columns = [rows["actual_position"][:length] for rows in states]
+    columns = [rows[field][:length] for rows in states]
     chosen = path_points(columns)
     points = np.stack([column[chosen] for column in columns])
     parts = [rows[:length][chosen] for rows in states]
@@ -179,12 +180,12 @@ def style_space(figure: go.Figure, axes: Sequence[str], places: Sequence[int]) -
     )
 
 
-def figures_of_runs(runs: Sequence[tuple[str, Recorded, str]], axes: Sequence[str]) -> list[go.Figure]:
-    """The actual paths of some recordings, by name and colour, in the plane and, with a third axis, in space."""
+def figures_of_runs(runs: Sequence[tuple[str, Recorded, str, str]], axes: Sequence[str]) -> list[go.Figure]:
+    """Paths of recordings, each by name, colour and field, in the plane and, with a third axis, in space."""
     kinds = [go.Scatter, go.Scatter3d][: len(axes) - 1]
     figures = [go.Figure() for _ in kinds]
-    for name, recorded, colour in runs:
-        path = _actual_path(recorded, axes)
+    for name, recorded, colour, field in runs:
+        path = _path(recorded, axes, field)
         for count, (kind, figure) in enumerate(zip(kinds, figures, strict=True), start=2):
             places = "<br>".join(
                 f"{escape(axis_label(axis))} %{{{at}:.3f}}" for axis, at in zip(axes[:count], "xyz", strict=False)

@@ -2,26 +2,33 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Final, Protocol
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.recording.mcap_chunks import CORRUPT
 from cnc_ptp.recording.run_inputs import RunInputs
-from cnc_ptp.recording.writer import CHECKPOINT_TEXT, Recording
+from cnc_ptp.recording.writer import CHECKPOINT_TEXT
 from cnc_ptp.state.faults import DAMAGED, OTHER_VERSION
 from cnc_ptp.state.machine_state import MachineState, StateStore
 
 CHECKPOINT_SECONDS: Final = 10.0
 """Machine time between two checkpoints. A replay computes so much more than it was asked for."""
-NO_CHECKPOINTS: Final = "the recording has no checkpoints, as none has that was made in the graph or without them"
+NO_CHECKPOINTS: Final = "the recording has no checkpoints; cnc_ptp replay --checkpoints makes them, once"
+
+
+class CheckpointKeeper(Protocol):
+    """A recording that is being written, or the file beside one."""
+
+    def attachment(self, name: str, media_type: str, text: str) -> None: ...
+    def checkpoint(self, cycle: int, state: bytes) -> None: ...
 
 
 class Checkpoints:
     """Writes a checkpoint into a recording whenever its time has come."""
 
-    def __init__(self, recording: Recording, parameters: MachineParameters, seconds: float) -> None:
+    def __init__(self, recording: CheckpointKeeper, parameters: MachineParameters, seconds: float) -> None:
         self._error: CncError | None = None
         self._missing: list[float] = []
         """When there should have been one, s."""
@@ -60,12 +67,12 @@ class Checkpoints:
 def state_before(recorded: RunInputs, machine: MachineParameters, cycle: int) -> tuple[MachineState | None, str]:
     """The newest state of a recording at or before `cycle` that this kernel can restore; and why not a newer one."""
     if not recorded.checkpoints:
-        return None, NO_CHECKPOINTS
+        return None, recorded.beside or NO_CHECKPOINTS
     store, why = StateStore(machine), ""
     store.texts.update(recorded.checkpoint_texts())
-    for first in sorted((first for first in recorded.checkpoints if first <= cycle), reverse=True):
+    for read in recorded.states_before(cycle):
         try:
-            return store.restore(recorded.checkpoint(first)), why
+            return store.restore(read()), why
         except CncError as error:
             if error.number not in (DAMAGED, OTHER_VERSION, CORRUPT):
                 raise

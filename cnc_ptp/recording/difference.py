@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import yaml
 
 from cnc_ptp import yaml_text
@@ -19,8 +20,8 @@ from cnc_ptp.wire.layout import Records
 TOO_LONG = 26021
 NOT_COMPARABLE = 26022
 NOTHING = "nothing was drawn"
-PROGRAM, START = "program", "start"
-"""What lies on each other: the starts of the programs, or of the recordings."""
+PROGRAM, START, RUN = "program", "start", "run"
+"""What lies on each other: the starts of the programs, of the recordings, or of the runs (cycle 0)."""
 COMPARED = {
     CHANNEL_STATE: ("path_velocity", "override_percent"),
     SPINDLE_STATE: ("set_speed_rpm", "actual_speed_rpm", "set_position_deg"),
@@ -33,8 +34,8 @@ class FieldDifference:
     """A field of a unit in both recordings.
 
     first, second  largest magnitude in each
-    largest        of the difference, and its `cycle`
-    parted         first cycle in which they differ, -1 without one
+    largest        of the difference, and its `cycle`; NaN counts as infinite
+    parted         first cycle in which they differ in any bit, -1 without one
     """
 
     unit: str
@@ -62,6 +63,8 @@ def aligned(first: Recorded, second: Recorded, align: str = PROGRAM) -> tuple[Re
         raise CncError(NOT_COMPARABLE, f"{where}: cycle times of {times}", NOTHING)
     if not first.states.keys() & second.states.keys():
         raise CncError(NOT_COMPARABLE, f"{where}: have no unit in common", NOTHING)
+    if align == RUN:
+        return first, second
     begins = [program_start(recorded) if align == PROGRAM else first_cycle(recorded) for recorded in (first, second)]
     last = max(begins)
     return shifted(first, last - begins[0]), shifted(second, last - begins[1])
@@ -111,17 +114,21 @@ def differences(first: Recorded, second: Recorded) -> Iterator[FieldDifference]:
                 continue
             a, b = common_cycles(rows, others[unit])
             for field in fields if len(a) else ():
-                yield _difference(unit, field, a, b)
+                yield field_difference(unit, field, a["cycle"], a[field], b[field])
 
 
-def _difference(unit: str, field: str, first: Records, second: Records) -> FieldDifference:
-    change = np.abs(second[field] - first[field])
-    place = int(np.nan_to_num(change, nan=np.inf).argmax())
-    apart = np.flatnonzero(first[field] != second[field])
-    one, other = (float(np.abs(rows[field]).max()) for rows in (first, second))
-    cycles = first["cycle"]
+def field_difference(
+    unit: str, field: str, cycles: npt.NDArray[Any], first: npt.NDArray[Any], second: npt.NDArray[Any]
+) -> FieldDifference:
+    """Of the values (n,) at the same `cycles` (n,); n > 0."""
+    one, other = (values.astype(np.float64) for values in (first, second))
+    change = np.nan_to_num(np.abs(other - one), nan=np.inf)
+    apart = np.flatnonzero(one.view(np.uint64) != other.view(np.uint64))
+    place = int(apart[change[apart].argmax()]) if len(apart) else 0
+    largest = float(change[place]) if len(apart) else 0.0
     parted = int(cycles[apart[0]]) if len(apart) else -1
-    return FieldDifference(unit, field, one, other, float(change[place]), int(cycles[place]), parted)
+    size, now = (float(np.abs(values).max()) for values in (one, other))
+    return FieldDifference(unit, field, size, now, largest, int(cycles[place]), parted)
 
 
 def measure_of(difference: FieldDifference, units: dict[str, str]) -> str:

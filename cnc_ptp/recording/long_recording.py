@@ -20,6 +20,7 @@ from mcap.opcode import Opcode
 from cnc_ptp.recording.mcap_chunks import MessageRun, RawRecord
 from cnc_ptp.recording.mcap_index import ChunkPlace, McapIndex
 from cnc_ptp.recording.opened import WORKERS, ahead
+from cnc_ptp.recording.origin import require_own
 from cnc_ptp.recording.parts import files_of
 from cnc_ptp.recording.reader import (
     AXIS_STATE,
@@ -107,6 +108,13 @@ def read_for_report(
             parts.append(McapIndex(file))
             opened.callback(parts[-1].close)
         return _read(Path(path), parts, begin, end, most_states)
+
+
+def read_own(path: str | Path, begin: float | None, end: float | None) -> Recorded:
+    """The same. Raises besides CncError 26017 for a recording of another program."""
+    recorded = read_for_report(path, begin, end)
+    require_own(recorded.path, recorded.metadata, recorded.states)
+    return recorded
 
 
 def _read(

@@ -27,7 +27,8 @@ END_SIZE = RECORD_PREFIX.size + 20 + len(MCAP0_MAGIC)
 """Bytes of the footer and the magic behind it."""
 CHUNK_INDEX = struct.Struct("<QQQQI")
 """First and last time, offset and length of the chunk, bytes of the table that follows."""
-INDEX_OFFSET = np.dtype([("channel", "<u2"), ("offset", "<u8")])
+INDEX_OFFSET = struct.Struct("<HQ")
+"""A channel and the offset of its message index."""
 NO_INDEX: Mapping[int, int] = {}
 
 
@@ -57,6 +58,8 @@ class McapIndex(RecordReader):
         self.metadata: list[Metadata] = []
         self.attachments: dict[str, int] = {}
         """Offsets by name."""
+        self._chunk_count = -1
+        """What the summary says; -1: nothing."""
         try:
             self._file = os.open(path, os.O_RDONLY)
             self._size = os.fstat(self._file).st_size
@@ -69,7 +72,7 @@ class McapIndex(RecordReader):
         """The file has a summary: it was closed."""
         if summary is not None:
             self._read_summary(summary)
-        if not self.chunks:
+        if not self.chunks and self._chunk_count != 0:
             self._scan()
 
     def close(self) -> None:
@@ -141,26 +144,27 @@ class McapIndex(RecordReader):
 
     def _read_summary(self, start: int) -> None:
         for record in self._summary_records(start):
-            self._take_name(record)
-            if record.opcode == Opcode.STATISTICS:
-                self.counts = self.parse(Statistics.read, record).channel_message_counts
-            elif record.opcode == Opcode.CHUNK_INDEX:
+            if record.opcode == Opcode.CHUNK_INDEX:  # most are
                 self.chunks.append(self._chunk_place(record))
+            elif record.opcode == Opcode.STATISTICS:
+                statistics = self.parse(Statistics.read, record)
+                self.counts, self._chunk_count = statistics.channel_message_counts, statistics.chunk_count
             elif record.opcode == Opcode.METADATA_INDEX:
                 place = self.parse(MetadataIndex.read, record)
                 self.metadata.append(self.parse(Metadata.read, self.record(place.offset)))
             elif record.opcode == Opcode.ATTACHMENT_INDEX:
                 attachment = self.parse(AttachmentIndex.read, record)
                 self.attachments[attachment.name] = attachment.offset
+            else:
+                self._take_name(record)
 
     def _chunk_place(self, record: RawRecord) -> ChunkPlace:
         try:
             first, last, offset, length, size = CHUNK_INDEX.unpack_from(record.body)
-            table = np.frombuffer(record.body, dtype=INDEX_OFFSET, count=size // INDEX_OFFSET.itemsize, offset=36)
-        except (struct.error, ValueError) as error:
+            table = record.body[CHUNK_INDEX.size : CHUNK_INDEX.size + size]
+            return ChunkPlace(first, last, offset, length, dict(INDEX_OFFSET.iter_unpack(table)))
+        except struct.error as error:
             raise self.corrupt(record.offset, f"the chunk index cannot be read: {error}") from error
-        indexes = dict(zip(table["channel"].tolist(), table["offset"].tolist(), strict=True))
-        return ChunkPlace(first, last, offset, length, indexes)
 
     def _scan(self) -> None:
         """All whole records of a file without a list of its chunks, which are uncompressed for their channels."""

@@ -146,7 +146,7 @@ def _event_row(event: Event) -> tuple[Any, ...]:
 
 def _event_of(*fields: Any) -> Event:
     *head, values = fields
-    return Event(*head, [EventValue(*value) for value in values])
+    return Event(*head, values=[EventValue(*value) for value in values])
 
 
 def write_record(recording: Recording, record: CommandRecord | Event) -> None:

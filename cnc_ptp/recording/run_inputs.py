@@ -7,14 +7,20 @@ from __future__ import annotations
 
 import heapq
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from functools import partial
+from hashlib import blake2b
 from itertools import chain
 from pathlib import Path
 from types import TracebackType
+from typing import Final
 
 from mcap_ros2.decoder import DecoderFactory
 
+from cnc_ptp.errors import CncError
+from cnc_ptp.parameters import MachineParameters, load_machine
 from cnc_ptp.protocol.blocks import CommandRecord
+from cnc_ptp.recording.bag import FILE
 from cnc_ptp.recording.mcap_file import METADATA
 from cnc_ptp.recording.mcap_index import ChunkPlace, McapIndex
 from cnc_ptp.recording.origin import require_computable, require_known_format
@@ -22,7 +28,17 @@ from cnc_ptp.recording.parts import files_of
 from cnc_ptp.recording.reader import COMMAND, STATE_TYPES, TICK, RawMessage, command_record
 from cnc_ptp.recording.writer import CHECKPOINT, CHECKPOINT_TEXT, MACHINE_FILE, PLC_FILE
 from cnc_ptp.wire.schemas import full_name
-from cnc_ptp.wire.ticks import decode_tick
+from cnc_ptp.wire.ticks import Tick, decode_tick
+
+CHECKPOINTS_OF: Final = "cnc_ptp.checkpoints"
+"""Metadata of a file beside a recording: the run that its checkpoints are of."""
+NO_MACHINE: Final = 26155
+
+
+def checkpoint_file(recording: Path) -> Path:
+    """Where the checkpoints of a recording are that it does not have itself."""
+    root = recording.parent if recording.name == FILE else recording
+    return root.with_name(f"{root.name}.checkpoints")
 
 
 class RunInputs:
@@ -30,9 +46,10 @@ class RunInputs:
 
     machine_yaml  empty if it has none
     commands      in the order of their cycles
-    checkpoints   cycles before which there is one
+    checkpoints   cycles before which there is one, also in the file beside the recording
+    beside        why the file beside it does not count, empty if it does or if there is none
     plc_file      name of the PLC in a file that served the run, empty if none did
-    end           the cycle after the last one
+    begin, end    the first cycle whose blocks are recorded, and that after the last one
 
     Raises CncError 26001 to 26003, 26014, 26016 (newer format), 26018 (commands are missing).
     """
@@ -40,6 +57,7 @@ class RunInputs:
     def __init__(self, path: str | Path) -> None:
         self.path = Path(path)
         self._parts = [_Part(file) for file in files_of(self.path)]
+        self._beside: list[_Part] = []
         values: dict[str, str] = {}
         for metadata in chain.from_iterable(part.index.metadata for part in self._parts):
             if metadata.name == METADATA:
@@ -50,17 +68,38 @@ class RunInputs:
         self.cycle_time_ns = int(values.get("cycle_time_ns", "1000000"))
         self._attachments = {name: part for part in self._parts for name in part.index.attachments}
         self.machine_yaml = self._attached(MACHINE_FILE).decode(errors="replace")
+        commands = chain.from_iterable(part.commands() for part in self._parts)
+        self.commands = sorted(commands, key=lambda record: record.cycle)
+        self.beside = self._take_beside(checkpoint_file(self.path))
         numbers = [name.removeprefix(CHECKPOINT) for name in self._attachments if name.startswith(CHECKPOINT)]
         self.checkpoints = sorted(int(number) for number in numbers if number.isdecimal())
         names = [name for name in self._attachments if name.startswith(PLC_FILE)]
         self.plc_file = names[0].removeprefix(PLC_FILE) if names else ""
-        commands = chain.from_iterable(part.commands() for part in self._parts)
-        self.commands = sorted(commands, key=lambda record: record.cycle)
+        self.begin = min((tick.first_cycle for part in self._parts[:1] for tick in part.ticks(0)), default=0)
         self.end = self._end()
 
-    def checkpoint(self, cycle: int) -> bytes:
-        """The state before one of the cycles of `checkpoints`."""
-        return self._attached(f"{CHECKPOINT}{cycle}")
+    def required_machine(self) -> MachineParameters:
+        """Raises CncError 26155 where there is no machine file, ParameterError for one that is wrong."""
+        if not self.machine_yaml:
+            reason = f"recording {self.path}: holds no attachment machine.yaml"
+            raise CncError(NO_MACHINE, reason, "nothing was computed, record it with cnc_ptp")
+        return load_machine(self.machine_yaml, f"{self.path}:{MACHINE_FILE}")
+
+    def run_id(self) -> str:
+        """A digest of all that decides the run: the machine and the commands."""
+        digest = blake2b(self.machine_yaml.encode(errors="surrogatepass"), digest_size=16)
+        for record in self.commands:
+            words = (record.cycle, record.target, record.command, record.accepted, record.arguments_json)
+            digest.update(repr(words).encode(errors="surrogatepass"))
+        return digest.hexdigest()
+
+    def states_before(self, cycle: int) -> Iterator[Callable[[], bytes]]:
+        """Reads the checkpoints at or before a cycle, the newest first; each may raise CncError 26003."""
+        for first in sorted((first for first in self.checkpoints if first <= cycle), reverse=True):
+            name = f"{CHECKPOINT}{first}"
+            for part in [*self._beside, *self._parts]:
+                if name in part.index.attachments:
+                    yield partial(part.index.attached, name)
 
     def checkpoint_texts(self) -> dict[str, str]:
         """Long texts of the states by their digests."""
@@ -75,7 +114,7 @@ class RunInputs:
         return chain.from_iterable(part.messages(types, from_ns) for part in self._parts)
 
     def close(self) -> None:
-        for part in self._parts:
+        for part in [*self._parts, *self._beside]:
             part.index.close()
 
     def __enter__(self) -> RunInputs:
@@ -85,6 +124,21 @@ class RunInputs:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+
+    def _take_beside(self, file: Path) -> str:
+        """The attachments of the file beside the recording; why they do not count."""
+        if not file.is_file():
+            return ""
+        try:
+            part = _Part(file)
+        except CncError as error:
+            return str(error)
+        self._beside.append(part)
+        runs = [each.metadata.get("run") for each in part.index.metadata if each.name == CHECKPOINTS_OF]
+        if runs != [self.run_id()]:
+            return f"{file} has the checkpoints of another run"
+        self._attachments = dict.fromkeys(part.index.attachments, part) | self._attachments
+        return ""
 
     def _attached(self, name: str) -> bytes:
         """Empty if there is none of this name."""
@@ -99,7 +153,7 @@ class RunInputs:
         states: Counter[str] = Counter()
         for part in self._parts:
             states.update(dict(part.state_counts()))
-        ends = [end for part in self._parts for end in part.tick_ends()]
+        ends = [tick.first_cycle + tick.count for part in self._parts for tick in part.ticks(-1)]
         last_ns, confirmed = max(times, default=self.start_ns - 1), max([*states.values(), *ends], default=0)
         return min(max(0, last_ns - self.start_ns + self.cycle_time_ns) // self.cycle_time_ns, confirmed)
 
@@ -129,12 +183,12 @@ class _Part:
             if self._type_of(id) in STATE_TYPES:
                 yield self.index.channels[id].topic, count
 
-    def tick_ends(self) -> Iterator[int]:
-        """The cycles behind the last ticks."""
+    def ticks(self, place: int) -> Iterator[Tick]:
+        """Those of one of the chunks that have ticks, 0: the first, -1: the last one."""
         wanted = {id: TICK for id in self.index.channels if self._type_of(id) == TICK}
-        for message in self._in_order(self._chunks(wanted)[-1:], wanted):
-            tick = decode_tick(message.cdr)
-            yield tick.first_cycle + tick.count
+        chunks = self._chunks(wanted)
+        for message in self._in_order(chunks[place:][:1], wanted):
+            yield decode_tick(message.cdr)
 
     def _in_order(self, chunks: Sequence[ChunkPlace], wanted: Mapping[int, str]) -> Iterator[RawMessage]:
         """`wanted`: types by channel. Chunks of one time are merged."""

@@ -6,29 +6,27 @@ of the recording come at their cycles, whatever the changed run does.
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
-from cnc_ptp.machine.wiring import build_units
-from cnc_ptp.parameters import MachineParameters, load_machine
-from cnc_ptp.parameters.changed import changed_text
+from cnc_ptp.parameters import load_machine
+from cnc_ptp.parameters.changed import changed_text, read_changes
+from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.plc.scenario import Entry
-from cnc_ptp.protocol.blocks import ChannelBlock, Command, CommandRecord, CycleBlock, PlcBlock, json_of
+from cnc_ptp.protocol.blocks import ChannelBlock, Command, CommandRecord, CycleBlock
 from cnc_ptp.protocol.channel_states import ChannelStateCode
-from cnc_ptp.protocol.commands import COUPLINGS
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.recording.checkpoints import state_before
-from cnc_ptp.recording.reader import RawMessage
+from cnc_ptp.recording.computed_again import by_unit, commands_by_cycle, computed_again, fresh_machine
+from cnc_ptp.recording.recorded_answers import DelayedAnswers, RecordedAnswers
 from cnc_ptp.recording.run_inputs import RunInputs
 from cnc_ptp.state.other_parameters import change_parameters
-from cnc_ptp.wire.block_codec import codec_of
 
 TIME_OUTSIDE: Final = 26154
-NO_MACHINE: Final = 26155
 NO_LOAD: Final = 26157
 NOTHING: Final = "nothing was computed"
 
@@ -56,25 +54,23 @@ class WhatIf:
 
     def __init__(self, recorded: RunInputs, change: Change) -> None:
         """`recorded` stays open as long as it runs. Raises ParameterError, CncError 26153, 26154, 26155, 26157."""
-        if not recorded.machine_yaml:
-            reason = f"recording {recorded.path}: holds no attachment machine.yaml"
-            raise CncError(NO_MACHINE, reason, f"{NOTHING}, record it with cnc_ptp")
         self._recorded, self._change = recorded, change
-        self._old = load_machine(recorded.machine_yaml, f"{recorded.path}:machine.yaml")
+        self._old = recorded.required_machine()
         self.machine_text = recorded.machine_yaml
         self.machine = self._old
         if change.parameters:
-            self.machine_text = changed_text(recorded.machine_yaml, change.parameters)
-            self.machine = load_machine(self.machine_text, f"{recorded.path}:machine.yaml")
+            changes = read_changes(change.parameters, self._old)
+            self.machine_text = changed_text(recorded.machine_yaml, changes)
+            self.machine = load_machine(recorded.machine_yaml, f"{recorded.path}:machine.yaml", changes=changes)
         self._cycle_time = self._old.cycle_time_us * 1e-6
         self.begin = self._block_at(change.begin)
         self.end = recorded.end if change.end is None else self._end_at(change.end)
-        self._commands = self._recorded_commands()
+        self._commands = commands_by_cycle(recorded.commands, self._old)
         self._require_load()
         self.note = ""
         self.running: list[str] = []
         """Channels whose program has not ended so far."""
-        self._given = GivenByUnits(recorded, self.begin, self.begin - self._old.block_cycles)
+        self._answers = RecordedAnswers(recorded, self.begin, self._old.block_cycles)
 
     def run(self) -> Iterator[Outputs]:
         """All blocks from `begin` on. Raises CncError 26156 for parameters that make other parts of a unit."""
@@ -82,7 +78,7 @@ class WhatIf:
         if self.machine is not self._old:
             runners, blocks = machine.parts
             change_parameters(runners, self._old, self.machine)
-            changed = OfflineMachine(self.machine, build_units(self.machine, end_when_idle=False))
+            changed = fresh_machine(self.machine)
             changed.go_on_from(machine.next_cycle, runners, blocks)
             machine = changed
         while machine.next_cycle < self.end:
@@ -98,21 +94,16 @@ class WhatIf:
         return round(seconds / self._cycle_time)
 
     def _block_at(self, seconds: float) -> int:
-        """The first cycle of the block in which a time lies. Raises CncError 26154."""
-        duration = self._recorded.end * self._cycle_time
-        if not 0.0 <= seconds <= duration:
-            reason = f"--from {seconds:g} is not within the recorded time 0 ... {duration:g} s"
+        """The first cycle of the block in which a time lies. Raises CncError 26154.
+
+        Before the first block that is recorded nobody knows which commands were those of channels.
+        """
+        begin, duration = self._recorded.begin * self._cycle_time, self._recorded.end * self._cycle_time
+        if not begin <= seconds <= duration:
+            reason = f"--from {seconds:g} is not within the recorded time {begin:g} ... {duration:g} s"
             raise CncError(TIME_OUTSIDE, reason, NOTHING, value=seconds, limit=duration)
         count = self._old.block_cycles
         return round(seconds / self._cycle_time) // count * count
-
-    def _recorded_commands(self) -> dict[int, list[CommandRecord]]:
-        by_cycle: dict[int, list[CommandRecord]] = defaultdict(list)
-        for record in self._recorded.commands:
-            switches_plc = record.command in PLC_SWITCHES
-            if (record.target != PLC or switches_plc) and not is_refused_coupling(record, self._old):
-                by_cycle[record.cycle].append(record)
-        return by_cycle
 
     def _require_load(self) -> None:
         """Raises CncError 26157 where there is no program to be replaced."""
@@ -125,8 +116,8 @@ class WhatIf:
             raise CncError(NO_LOAD, reason, NOTHING)
 
     def _at_begin(self) -> OfflineMachine:
-        """The machine as it was recorded before `begin`, with a PLC that serves what the recorded one served."""
-        machine = OfflineMachine(self._old, build_units(self._old, end_when_idle=False))
+        """The machine as it was recorded before `begin`, with a PLC that answers as the recorded one did."""
+        machine = fresh_machine(self._old)
         if self.begin:  # at 0 there is nothing to be restored
             state, why = state_before(self._recorded, self._old, self.begin)
             if state is None:
@@ -134,15 +125,11 @@ class WhatIf:
             else:
                 machine.go_on_from(*state)
                 self.note = f"computed from the checkpoint at {state.next_cycle * self._cycle_time:g} s"
-        while machine.next_cycle < self.begin:
-            given = [each for each in self._commands.get(machine.next_cycle, ()) if each.target != PLC]
-            machine.replay_tick(by_unit([Command.from_record(each) for each in given]))
-        plc = machine.runner(PLC)
-        for record in self._recorded.commands:
-            if record.target == PLC and record.command in PLC_SWITCHES and record.cycle < self.begin:
-                plc.command(Command.from_record(record))
-        plc.unit.take_events()
-        plc.unit.take_records()
+        deque(computed_again(machine, self._commands, self.begin), maxlen=0)
+        plc = machine.runner(PLC).unit
+        assert isinstance(plc, PlcUnit)
+        plc.do_auto_acknowledge(self.begin, enabled=False)
+        plc.outside.append(DelayedAnswers(self._answers))
         return machine
 
     def _changed_commands(self, cycle: int) -> dict[str, list[Command]]:
@@ -158,7 +145,7 @@ class WhatIf:
 
     def _changed(self, record: CommandRecord) -> Command | None:
         change, command = self._change, Command.from_record(record)
-        if self._given.has(record):
+        if self._answers.gives(record):
             return None
         if change.override is not None and command.command == "set_override" and command.target in self._old.channels:
             return None
@@ -167,64 +154,9 @@ class WhatIf:
         return command
 
 
-Given = tuple[int, str, str, str]
-"""Cycle, target, name and arguments of a command."""
-ANSWERS: Final = ("acknowledge", "coupling_answer", "gear_changed")
 RESTING: Final = (int(ChannelStateCode.IDLE), int(ChannelStateCode.READY))
-PLC_SWITCHES: Final = ("auto_acknowledge", "serve")
-
-
-BLOCK_TYPES: Final[dict[str, type[ChannelBlock] | type[PlcBlock]]] = {
-    "cnc_ptp/msg/ChannelBlock": ChannelBlock,
-    "cnc_ptp/msg/PlcBlock": PlcBlock,
-}
-
-
-class GivenByUnits:
-    """Commands of channels, and the answers of the PLC to what channels and spindles ask for from `begin` on.
-
-    Units give them again. Blocks are read as far as the run has come.
-    """
-
-    def __init__(self, recorded: RunInputs, begin: int, before: int) -> None:
-        """`before`: the cycle of the block before; what is asked for in it is answered after it."""
-        self._begin = begin
-        self._known: set[Given] = set()
-        self._requests: set[int] = set()
-        self._reached = -1
-        self._messages = recorded.messages(BLOCK_TYPES, max(0, before))
-
-    def has(self, record: CommandRecord) -> bool:
-        while self._reached <= record.cycle and (message := next(self._messages, None)) is not None:
-            self._take(message)
-        return (record.cycle, record.target, record.command, record.arguments_json) in self._known
-
-    def _take(self, message: RawMessage) -> None:
-        block = codec_of(BLOCK_TYPES[message.type_name]).decode(message.cdr)
-        self._reached = block.first_cycle
-        if block.first_cycle + 2 * block.count <= self._begin:
-            return
-        is_channel = isinstance(block, ChannelBlock)
-        if is_channel:
-            self._requests.update(request.id for request in block.requests)
-        for command in block.commands if block.first_cycle >= self._begin else ():
-            known = command.command != "acknowledge" or command.arguments.get("id") in self._requests
-            if is_channel or (command.command in ANSWERS and known):
-                self._known.add((block.first_cycle, command.target, command.command, json_of(command.arguments)))
 
 
 def is_running(block: CycleBlock) -> bool:
     """A channel whose program has not ended."""
     return isinstance(block, ChannelBlock) and int(block.state[-1]) not in RESTING
-
-
-def by_unit(commands: Sequence[Command]) -> dict[str, list[Command]]:
-    units: dict[str, list[Command]] = defaultdict(list)
-    for command in commands:
-        units[command.target].append(command)
-    return units
-
-
-def is_refused_coupling(record: CommandRecord, machine: MachineParameters) -> bool:
-    """It changed nothing, and the PLC's reason is not recorded: fed in again, it might be carried out."""
-    return not record.accepted and record.command in COUPLINGS and record.target in machine.axes

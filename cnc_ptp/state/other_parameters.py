@@ -26,6 +26,9 @@ OTHER_PARTS = 26156
 
 def change_parameters(runners: Mapping[str, UnitRunner], old: MachineParameters, new: MachineParameters) -> None:
     """Raises CncError 26156 when a unit would be built of other parts; then the units are void."""
+    if (old.cycle_time_us, old.block_cycles) != (new.cycle_time_us, new.block_cycles):
+        reason = "other parameters would give the machine another cycle time or other cycle blocks"
+        raise CncError(OTHER_PARTS, reason, "nothing was computed")
     before, after = build_units(old), build_units(new)
     if list(before) != list(after):
         raise CncError(OTHER_PARTS, "other parameters would give the machine other units", "nothing was computed")

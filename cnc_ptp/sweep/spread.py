@@ -7,10 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import yaml
 
-from cnc_ptp import yaml_text
 from cnc_ptp.errors import CncError
+from cnc_ptp.parameters.changed import read_value
 from cnc_ptp.sweep.faults import BAD_VARIATION, NOTHING
 
 Scalar = bool | int | float | str
@@ -50,7 +49,7 @@ def read_spread(text: str) -> Spread:
     """The spread that a text describes in one of FORMS. Raises CncError 26177."""
     kind, *numbers = text.split(":")
     if not numbers:
-        return Values(tuple(read_value(item) for item in text.split(",")))
+        return Values(tuple(scalar(item) for item in text.split(",")))
     if kind == "normal" and len(numbers) == 2:
         return normal(text, *read_numbers(text, numbers))
     if kind == "uniform" and len(numbers) == 2:
@@ -64,17 +63,9 @@ def read_spread(text: str) -> Spread:
     raise bad(text, f"is none of {FORMS}")
 
 
-def read_value(text: str) -> Scalar:
+def scalar(text: str) -> Scalar:
     """A number, true or false, or text, as a machine file would have it."""
-    for kind in (int, float):
-        try:
-            return kind(text)
-        except ValueError:
-            continue
-    try:
-        value = yaml_text.load(text)
-    except yaml.YAMLError:
-        value = None
+    value = read_value(text)
     if isinstance(value, (bool, int, float, str)):
         return value
     raise bad(text, "has a value that is neither number nor text" if text.strip() else "has an empty value")

@@ -7,29 +7,41 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 
-from cnc_ptp.errors import CncError, nearest_name
+from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import MachineParameters, ParameterError, load_machine
+from cnc_ptp.parameters.changed import ChosenParameter, choose_parameter
 from cnc_ptp.parameters.declare.declarations import Declaration, ParameterValue
 from cnc_ptp.parameters.errors import CONTRADICTION
 from cnc_ptp.parameters.loader import Changes
 from cnc_ptp.parameters.read.parameter_set import parameter_limits
-from cnc_ptp.parameters.read.values import BadValue, checked_value
-from cnc_ptp.parameters.view.by_name import parameter_by_name
+from cnc_ptp.parameters.read.values import BadValue
 from cnc_ptp.sweep.faults import BAD_PARAMETER, BAD_VARIATION, NOTHING
 from cnc_ptp.sweep.spread import Interval, Scalar, Spread, Values, read_spread
 
 
 @dataclass(frozen=True, slots=True)
 class Variation:
-    """A parameter of a unit and how it varies. `text`: the spread as it was given, `dimension` of the values."""
+    """A parameter of a unit and how it varies. `text`: the spread as it was given."""
 
-    unit: str
-    ros_name: str
+    parameter: ChosenParameter
     text: str
     spread: Spread
-    declaration: Declaration
-    subject: str
-    dimension: str
+
+    @property
+    def unit(self) -> str:
+        return self.parameter.unit
+
+    @property
+    def ros_name(self) -> str:
+        return self.parameter.ros_name
+
+    @property
+    def subject(self) -> str:
+        return self.parameter.subject
+
+    @property
+    def declaration(self) -> Declaration:
+        return self.parameter.declaration
 
     @property
     def name(self) -> str:
@@ -47,7 +59,7 @@ class Variation:
     def checked(self, value: Scalar) -> ParameterValue:
         """A value in the type of the parameter. Raises CncError 26178 beyond its limits."""
         try:
-            return checked_value(self.declaration, value, self.dimension)
+            return self.parameter.checked(value)
         except BadValue as error:
             raise CncError(BAD_PARAMETER, f"{self.subject}: {error.text}", NOTHING, where="--vary") from None
 
@@ -100,22 +112,14 @@ def read_variations(texts: Sequence[str], machine: MachineParameters) -> list[Va
 
 def read_variation(text: str, machine: MachineParameters) -> Variation:
     name, equals, spread = text.partition("=")
-    unit, dot, parameter = name.strip().removeprefix("/").partition(".")
-    if not (equals and dot and parameter):
-        reason = f"'{text}' is not of the form unit.parameter=range, as x.getriebe.0.kv=2000:8000:13"
-        raise CncError(BAD_VARIATION, reason, NOTHING, where="--vary")
-    own = machine.sets.get(unit)
-    if own is None:
-        reason = f"the machine has no unit '{unit}'{nearest_name(unit, machine.sets)}"
-        raise CncError(BAD_PARAMETER, reason, NOTHING, where="--vary")
     try:
-        found = parameter_by_name(own, parameter)
+        found = choose_parameter(name, machine) if equals else None
     except CncError as error:
         raise CncError(BAD_PARAMETER, error.reason, NOTHING, where="--vary") from None
-    declaration, indexes, _ = found
-    dimension = declaration.unit_for(own.axis_type)
-    subject = declaration.subject(indexes, unit)
-    return Variation(unit, found.ros_name, spread.strip(), read_spread(spread.strip()), declaration, subject, dimension)
+    if found is None:
+        reason = f"'{text}' is not of the form unit.parameter=range, as x.getriebe.0.kv=2000:8000:13"
+        raise CncError(BAD_VARIATION, reason, NOTHING, where="--vary")
+    return Variation(found, spread.strip(), read_spread(spread.strip()))
 
 
 def check_variations(variations: Sequence[Variation], text: str, file: str) -> None:

@@ -10,6 +10,7 @@ from click.testing import CliRunner, Result
 from machine_support import ROOT
 
 from cnc_ptp import cli
+from cnc_ptp.recording.mcap_file import METADATA, McapFile
 from cnc_ptp.recording.mcap_index import McapIndex
 from cnc_ptp.recording.reader import read_recording
 from cnc_ptp.recording.run_inputs import RunInputs
@@ -18,7 +19,7 @@ from cnc_ptp.state.faults import not_storable
 
 MILL = ROOT / "config" / "mill.yaml"
 PROGRAM = "G01 X50 Y20 F2400\nX0\nX50 Y0\nX0\nM30\n"
-WITHOUT = "the recording has no checkpoints, as none has that was made in the graph or without them"
+WITHOUT = "the recording has no checkpoints; cnc_ptp replay --checkpoints makes them, once"
 
 
 def call(*arguments: object) -> Result:
@@ -75,13 +76,13 @@ def test_a_changed_run_is_recorded_compared_and_laid_over_the_recorded_one(recor
     result = call("replay", recorded, "--from", 2, "--override", 50, "--to", 12, "-o", new, "--diff-page", page)
     assert result.exit_code == 0, result.output
     assert "note: computed from the checkpoint at 2 s" in result.output and "has not ended" not in result.output
-    assert "the runs part at 2.001 s" in result.output
+    assert "the runs part at 2 s" in result.output
     first, second = program_times(result.output)
     assert second == pytest.approx(2 * first, rel=0.05)  # but for ramps, at half the feed twice as long
     assert read_recording(new).metadata["what_if_of"] == "run.mcap"
     text = page.read_text()
-    assert "What differs" in text and "set path" in text and "actual path" in text and "new.mcap" in text
-    assert text.index("What differs") < text.index(">Paths<") < text.index(">Over time<")
+    assert "A set" in text and "B actual" in text and "B: new.mcap" in text
+    assert text.index(">Differences<") < text.index(">Path<") < text.index(">Over time<")
 
 
 def program_times(output: str) -> tuple[float, float]:
@@ -111,7 +112,9 @@ def test_another_program_and_further_commands(recorded: Path, tmp_path: Path) ->
 def test_diff_of_recordings(recorded: Path, tmp_path: Path) -> None:
     same = call("diff", recorded, recorded, "-o", tmp_path / "same.html")
     assert same.exit_code == 0 and "both runs are equal to the bit" in same.output
-    assert "Both runs are equal to the bit." in (tmp_path / "same.html").read_text()
+    assert "<b>never</b><span>set values part at</span>" in (tmp_path / "same.html").read_text()
+    part = call("diff", recorded, recorded, "--from", 1, "--to", 2, "-o", tmp_path / "part.html")
+    assert "compared from 1 s to 2 s" in part.output
     other = tmp_path / "ptp.mcap"
     ptp = ROOT / "config" / "ptp.yaml"
     assert call("simulate", ptp, "--duration", 0.1, "--record", other).exit_code == 0
@@ -135,8 +138,8 @@ def units_of(path: Path) -> str:
         (["--from", 2, "--to", 1], "P-ERR-26154 --to 1 is before --from 2; nothing was computed"),
         (
             ["--set", "x.getriebe.0.kw=1"],
-            "P-ERR-25005 {path}:machine.yaml:118:13: axis /x has no parameter 'getriebe.0.kw'; did you mean "
-            "getriebe[i].kv (P-AXIS-00099)?; the node does not start",
+            "P-ERR-26153 --set 'x.getriebe.0.kw=1': axis x has no parameter 'getriebe.0.kw'; did you mean "
+            "getriebe[i].kv (P-AXIS-00099)?; nothing was computed",
         ),
         (
             ["--set", "kv"],
@@ -163,7 +166,7 @@ def test_an_override_outside_is_refused(recorded: Path) -> None:
 def test_verify_does_not_go_with_a_change(recorded: Path) -> None:
     result = call("replay", recorded, "--verify", "--from", 1)
     assert result.exit_code == 2
-    assert "--verify and --publish do not go with a changed run; nothing was replayed" in result.output
+    assert "--verify, --publish and --checkpoints do not go with a changed run; nothing was replayed" in result.output
 
 
 def test_a_state_of_other_sources_is_passed_over(recorded: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -212,8 +215,49 @@ def test_a_plc_in_a_file_is_kept_and_a_note_says_that_it_is_not_executed(tmp_pat
     assert call("simulate", machine, "--plc", plc, "--record", path, "--checkpoints", 1).exit_code == 0
     assert read_recording(path).attachments["plc/plc_homing.py"] == plc.read_text()
     result = call("replay", path, "--from", 2.2)
-    assert "note: the PLC plc_homing.py is not executed again; what it took time for is acknowledged at once" in (
-        result.output
-    )
+    assert "note: the PLC plc_homing.py is not executed again; its commands are those of the recording" in result.output
     assert "note: computed from the checkpoint at 2 s" in result.output
     assert "both runs are equal to the bit" in result.output
+
+
+def foreign(path: Path, metadata: dict[str, str] | None = None) -> Path:
+    """An MCAP file without machine and blocks."""
+    with McapFile(path, describe=lambda _path, _information: None) as file:
+        if metadata is not None:
+            file.metadata(METADATA, metadata)
+    return path
+
+
+WHAT_IF, STORE, DIFF = ["replay", "{path}", "--from", 1], ["replay", "{path}", "--checkpoints", 1], ["diff", "{path}"]
+
+
+@pytest.mark.parametrize("words", [WHAT_IF, STORE, DIFF], ids=lambda words: " ".join(map(str, words)))
+def test_files_that_are_no_recordings_of_this_version(words: list[object], recorded: Path, tmp_path: Path) -> None:
+    def told(path: Path) -> str:
+        given = [str(word).replace("{path}", str(path)) for word in words]
+        return last_line(call(*given, *([recorded] if words is DIFF else [])))
+
+    future = foreign(tmp_path / "future.mcap", {"format": "99", "version": "9.0"})
+    assert told(future) == (
+        f"P-ERR-26016 recording {future}: has format 99 of cnc_ptp 9.0, this version reads up to format 1; nothing was "
+        "read, use a newer version of cnc_ptp"
+    )
+    other = foreign(tmp_path / "other.mcap")
+    without = (
+        "P-ERR-26011 recording {}: holds no attachment 'machine.yaml'; nothing was read"
+        if words is DIFF
+        else "P-ERR-26155 recording {}: holds no attachment machine.yaml; nothing was computed, record it with cnc_ptp"
+    )
+    assert told(other) == without.format(other)
+    text = tmp_path / "text.mcap"
+    text.write_text("no recording, but long enough for one")
+    assert told(text).startswith(f"P-ERR-26002 recording {text}: not an MCAP file: ")
+    missing = tmp_path / "missing.mcap"
+    assert told(missing).startswith(f"P-ERR-26001 recording {missing}")
+
+
+@pytest.mark.parametrize("option", ["--program", "--commands"])
+def test_inputs_that_cannot_be_read(option: str, recorded: Path, tmp_path: Path) -> None:
+    new = tmp_path / "new.mcap"
+    assert last_line(call("replay", recorded, option, tmp_path / "none", "-o", new)).startswith("P-ERR-26110 ")
+    assert not new.exists()

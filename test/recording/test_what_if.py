@@ -6,20 +6,27 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hli_support import message
 from machine_support import ROOT
 from state_support import Run
 
 from cnc_ptp.commands.run.replay import end_of
 from cnc_ptp.commands.run.what_if import compute, what_if
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.wiring import build_units
+from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.parameters import machine_text
+from cnc_ptp.plc.hli.hli import Hli
+from cnc_ptp.plc.plc_unit import PlcUnit
+from cnc_ptp.protocol.blocks import ChannelBlock, Command
 from cnc_ptp.recording.mcap_file import McapFile
 from cnc_ptp.recording.offline_run import OfflineRun
 from cnc_ptp.recording.reader import Recorded, read_recording
+from cnc_ptp.recording.recorded_answers import CHANNEL_BLOCK
 from cnc_ptp.recording.run_difference import difference
 from cnc_ptp.recording.run_inputs import RunInputs
+from cnc_ptp.recording.trigger import Condition
 from cnc_ptp.recording.what_if import Change, WhatIf
+from cnc_ptp.wire.block_codec import codec_of
 
 SPINDLES = "examples/spindles/"
 OLD_KV = 5000
@@ -34,15 +41,31 @@ RUNS = [
     Run("config/mill.yaml", "examples/tapping.nc"),
     Run("config/gantry.yaml", scenario="examples/figures/slave_gantry.yaml"),
     Run(SPINDLES + "two_channels.yaml", SPINDLES + "channel1.nc", SPINDLES + "two_channels_start.yaml"),
-]
+    # the PLC in a file: functions and gear changes that take their time, motions, homing, external setpoints
+    Run("config/mill.yaml", "examples/plc_tool_changer.nc", "examples/plc_tool_changer.yaml", plc="examples/plc_tool_changer.py"),
+    Run("config/ptp.yaml", scenario="examples/figures/plc_move_aborted.yaml", plc="examples/plc_move_axis.py"),
+    Run("examples/homing.yaml", plc="examples/plc_homing.py"),
+    Run("config/ptp.yaml", plc="examples/plc_setpoint_generator.py"),
+    # handshakes by a person
+    Run(SPINDLES + "gears.yaml", SPINDLES + "gears.nc", SPINDLES + "gears_plc.yaml"),
+    Run(SPINDLES + "plc_spindle.yaml", SPINDLES + "din.nc", SPINDLES + "plc.yaml"),
+    # trajectories, external setpoints, couplings, homing
+    Run("config/ptp.yaml", scenario="examples/trajectory.yaml"),
+    Run("config/ptp.yaml", scenario="examples/figures/ptp_external_setpoints.yaml"),
+    Run("config/ptp.yaml", scenario="examples/figures/slave_cam.yaml"),
+    Run("config/ptp.yaml", scenario="examples/figures/slave_cyclic.yaml"),
+    Run("config/ptp.yaml", scenario="examples/figures/slave_decoupling_0_5.yaml"),
+    Run("examples/sercos.yaml", scenario="examples/figures/ptp_drive_homing.yaml"),
+]  # fmt: skip
 
 
 def record(run: Run, path: Path, *, every: float = 1.0) -> Recorded:
     """The run with its checkpoints."""
     machine = run.parameters()
-    units = build_units(machine, scenario=run.entries(machine))
     text = machine_text(ROOT / run.machine)
-    with OfflineRun(machine, units, record=str(path), machine_text=text, checkpoint_seconds=every) as offline:
+    with OfflineRun(
+        machine, run.units(machine), record=str(path), machine_text=text, checkpoint_seconds=every
+    ) as offline:
         cycles = round(run.seconds * 1e6 / machine.cycle_time_us) if run.seconds else None
         for _ in offline.run(cycles=cycles):
             pass
@@ -58,16 +81,58 @@ def changed(recorded: Recorded, path: Path, change: Change) -> tuple[Recorded, s
 
 @pytest.mark.parametrize("run", RUNS, ids=lambda run: run.name)
 def test_a_run_without_a_change_is_the_recorded_one_from_anywhere(run: Run, tmp_path: Path) -> None:
-    recorded = record(run, tmp_path / "run.mcap")
+    require_the_same_from_anywhere(record(run, tmp_path / "run.mcap"), tmp_path)
+
+
+def require_the_same_from_anywhere(recorded: Recorded, folder: Path) -> None:
     duration = end_of(recorded) * recorded.cycle_time_ns * 1e-9
     for share in (0.0, 0.37, 0.8):
-        again, note = changed(recorded, tmp_path / f"again{share}.mcap", Change(share * duration))
+        again, note = changed(recorded, folder / f"again{share}.mcap", Change(share * duration))
         found = difference(recorded.path, again.path)
-        assert found.parts_at is None, (share, note, [row for row in found.rows if row.parts_at is not None][:3])
+        assert found.parts_at is None, (share, note, [row for row in found.rows if row.parted >= 0][:3])
         assert not share or duration * share < 1.0 or note.startswith("computed from the checkpoint at ")
+        require_equal_states(recorded, again)
         events = [event for event in recorded.events if event.cycle >= round(share * duration * 1000) + 20]
         texts = {(event.cycle, event.text) for event in again.events}
         assert all((event.cycle, event.text) in texts for event in events if event.source != "plc")
+
+
+def require_equal_states(recorded: Recorded, again: Recorded) -> None:
+    """All fields of all states, in the cycles of `again`."""
+    for topic, rows in again.states.items():
+        of_both = recorded.states[topic][np.isin(recorded.states[topic]["cycle"], rows["cycle"])]
+        assert len(rows) == len(of_both) > 0
+        for name in rows.dtype.names or ():
+            assert rows[name].tobytes() == of_both[name].tobytes(), (topic, name)
+
+
+def test_a_run_that_an_hli_and_a_jog_have_moved(tmp_path: Path) -> None:
+    """The HLI takes over the override and the functions of the channel, and acknowledges M8 after 0.3 s."""
+    run = Run("config/mill.yaml")
+    machine = run.parameters()
+    units, kinds = run.units(machine), unit_kinds(machine)
+    plc = units["plc"]
+    assert isinstance(plc, PlcUnit)
+    hli = Hli(plc, kinds=kinds, largest_overrides=dict.fromkeys(kinds, 100.0), timeout=0.5, numbers={})
+    path = tmp_path / "run.mcap"
+    text = machine_text(ROOT / run.machine)
+    with OfflineRun(machine, units, record=str(path), machine_text=text, checkpoint_seconds=1.0) as offline:
+        commands = {
+            5: Command("z", "jog", {"velocity": 5.0}),
+            45: Command("z", "jog", {"velocity": 0.0}),
+            60: Command("channel", "load", {"program": "hli.nc", "text": "G01 X20 F3000\nM8\nX40\nM30"}),
+            61: Command("channel", "start", {}),
+        }
+        for block in range(300):
+            done = [request.id for request in plc.requests_of("channel")] if block == 200 else []
+            served = {"override": 50.0 + block / 10, "functions": True, "done": done}
+            hli.take("channel", message("channel", "p1", block, **served), block * 0.01)
+            if block in commands:
+                plc.input(commands[block])
+            offline.step()
+    recorded = read_recording(path)
+    assert {"overlay", "jog", "acknowledge"} <= {each.command for each in recorded.commands if each.accepted}
+    require_the_same_from_anywhere(recorded, tmp_path)
 
 
 @pytest.fixture(scope="module")
@@ -125,10 +190,12 @@ def test_refusals(mill: Recorded, tmp_path: Path) -> None:
         "nothing was computed"
     )
     assert refusal(mill, Change(parameters=["u.kv=1"])) == (
-        "P-ERR-26153 --set 'u.kv=1' names the unit 'u', which the machine does not have. "
-        "Known: machine, channel, x, y, z, s; nothing was computed"
+        "P-ERR-26153 --set 'u.kv=1': the machine has no unit 'u'; nothing was computed"
     )
-    assert "has no parameter 'getriebe.0.kw'" in refusal(mill, Change(parameters=["x.getriebe.0.kw=1"]))
+    assert refusal(mill, Change(parameters=["x.getriebe.0.kv=fast"])) == (
+        "P-ERR-26153 --set 'x.getriebe.0.kv=fast': axis list, P-AXIS-00099 getriebe[0].kv of /x: value 'fast' is text, "
+        "an integer is needed; nothing was computed"
+    )
     assert refusal(mill, Change(2.0, program={})) == (
         "P-ERR-26157 --program takes the place of a program that is loaded after --from, and the last one is loaded "
         "at 0 s; nothing was computed"
@@ -157,4 +224,67 @@ def test_the_command_prints_where_the_runs_part(mill: Recorded, capsys: pytest.C
         diff=False,
     )  # fmt: skip
     printed = capsys.readouterr().out
-    assert status == 0 and "computed from the checkpoint at 3 s" in printed and "the runs part at 3.0" in printed
+    assert status == 0 and "computed from the checkpoint at 3 s" in printed and "the runs part at 3 s" in printed
+
+
+@pytest.mark.parametrize("change", ["machine.cycle_time_us=2000", "machine.block_cycles=5"])
+def test_the_cycle_is_that_of_the_recording(change: str, mill: Recorded, tmp_path: Path) -> None:
+    with pytest.raises(CncError) as refused:
+        changed(mill, tmp_path / "other.mcap", Change(2.0, parameters=[change]))
+    assert str(refused.value) == (
+        "P-ERR-26156 other parameters would give the machine another cycle time or other cycle blocks; "
+        "nothing was computed"
+    )
+
+
+def test_a_recording_that_begins_late_is_computed_from_its_first_block_on(tmp_path: Path) -> None:
+    """Before it nobody knows which of the recorded commands were those of channels."""
+    run = Run("config/mill.yaml", "examples/tapping.nc")
+    machine = run.parameters()
+    path = tmp_path / "late.mcap"
+    text = machine_text(ROOT / run.machine)
+    condition = Condition("z.set_velocity < 0", unit_kinds(machine))
+    with OfflineRun(machine, run.units(machine), record=str(path), machine_text=text, condition=condition) as offline:
+        for _ in offline.run():
+            pass
+    recorded = read_recording(path)
+    with RunInputs(path) as inputs:
+        begin, end = inputs.begin * 1e-3, inputs.end * 1e-3
+    assert 0.0 < begin < 1.0
+    assert refusal(recorded, Change()) == (
+        f"P-ERR-26154 --from 0 is not within the recorded time {begin:g} ... {end:g} s; nothing was computed"
+    )
+    again, _ = changed(recorded, tmp_path / "again.mcap", Change(begin))
+    assert difference(path, again.path).parts_at is None
+
+
+def test_a_function_takes_as_long_as_in_the_recording_whenever_it_comes(tmp_path: Path) -> None:
+    """M8 is acknowledged by hand. With half of the feed it comes later; what is new is acknowledged at once."""
+    (tmp_path / "hand.nc").write_text("G01 X20 F2400\nM8\nX0\nM30\n")
+    (tmp_path / "hand.yaml").write_text(
+        "- {at: 0, to: plc, do: auto_acknowledge, enabled: off}\n- {at: 1.5, to: plc, do: acknowledge, id: 1}\n"
+    )
+    recorded = record(
+        Run("config/mill.yaml", str(tmp_path / "hand.nc"), str(tmp_path / "hand.yaml")), tmp_path / "r.mcap"
+    )
+    ((begun, delay),) = delays(recorded.path)
+    assert delay > 500
+    slow, _ = changed(recorded, tmp_path / "slow.mcap", Change(0.1, end=5.0, override=50.0))
+    ((later, same),) = delays(slow.path)
+    assert later > begun + 300 and same == delay
+    program = {"program": "other.nc", "text": "G01 X20 F2400\nM8\nM9\nX0\nM30"}
+    other, _ = changed(recorded, tmp_path / "other.mcap", Change(program=program, end=5.0))
+    assert [taken for _, taken in delays(other.path)] == [delay, 10]
+
+
+def delays(path: Path) -> list[tuple[int, int]]:
+    """First cycle of each block with a request, and the cycles to its acknowledgement."""
+    with RunInputs(path) as inputs:
+        blocks = [codec_of(ChannelBlock).decode(message.cdr) for message in inputs.messages([CHANNEL_BLOCK])]
+        done = {
+            Command.from_record(record).arguments["id"]: record.cycle
+            for record in inputs.commands
+            if record.command == "acknowledge" and record.accepted
+        }
+    asked = [(request.id, block.first_cycle) for block in blocks for request in block.requests]
+    return [(cycle, done[number] - cycle) for number, cycle in asked]

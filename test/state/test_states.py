@@ -12,7 +12,6 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import load_machine
-from cnc_ptp.parameters.changed import changed_text
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import Command
 from cnc_ptp.state import decoding, machine_state
@@ -79,7 +78,7 @@ def test_a_program_that_reads_what_only_the_run_knows_continues_where_it_was() -
 
 def test_a_program_that_is_read_while_it_runs_continues_where_it_was() -> None:
     text = (ROOT / "config" / "mill.yaml").read_text(encoding="utf-8")
-    machine = load_machine(changed_text(text, ["channel.interpreter.checked_text=20"]), "mill.yaml")
+    machine = load_machine(text, "mill.yaml", changes={"channel": {"interpreter.checked_text": 20}})
     require_same_continuation(machine, entries(WAITING), seed="streamed", places=6, follow=60, seconds=10.0)
 
 

@@ -12,7 +12,7 @@ from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, PlcBlock
-from cnc_ptp.recording.what_if import is_refused_coupling
+from cnc_ptp.recording.computed_again import is_refused_coupling
 
 
 def bits(bench: MachineBench) -> dict[str, list[str]]:

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 from machine_support import ROOT
 
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
+from cnc_ptp.machine.plc_file import read_plc
 from cnc_ptp.machine.run_entries import read_entries
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import PlcBlock
-from cnc_ptp.protocol.unit import PLC
+from cnc_ptp.protocol.unit import PLC, Unit
 from cnc_ptp.state.machine_state import StateStore
 
 
@@ -26,10 +27,12 @@ class Run(NamedTuple):
     scenario: str = ""
     dialect: str | None = None
     seconds: float = 0.0
+    plc: str = ""
 
     @property
     def name(self) -> str:
-        return "-".join(part.rpartition("/")[2] for part in (self.machine, self.program, self.scenario) if part)
+        parts = (self.machine, self.plc, self.program, self.scenario)
+        return "-".join(part.rpartition("/")[2] for part in parts if part)
 
     def parameters(self) -> MachineParameters:
         return read_machine(ROOT / self.machine)
@@ -38,6 +41,10 @@ class Run(NamedTuple):
         program = str(ROOT / self.program) if self.program else None
         scenario = str(ROOT / self.scenario) if self.scenario else None
         return read_entries(machine, program=program, scenario=scenario, dialect=self.dialect)
+
+    def units(self, machine: MachineParameters) -> Mapping[str, Unit]:
+        plc_file = read_plc(str(ROOT / self.plc)) if self.plc else None
+        return build_units(machine, scenario=self.entries(machine), plc_file=plc_file)
 
 
 def texts(outputs: Outputs) -> list[str]:

@@ -11,8 +11,7 @@ from cnc_ptp.commands.output_file import check_page, write_output
 from cnc_ptp.plots.comparison import comparison_page
 from cnc_ptp.plots.report import report_page
 from cnc_ptp.recording.difference import PROGRAM
-from cnc_ptp.recording.long_recording import read_for_report
-from cnc_ptp.recording.origin import require_own
+from cnc_ptp.recording.long_recording import read_own
 from cnc_ptp.recording.reader import Recorded
 from cnc_ptp.recording.selection import selected
 
@@ -43,13 +42,6 @@ def report(
     if not recorded.complete:
         print(f"note: {recorded.missing}")
     return 0
-
-
-def read_own(recording: str, begin: float | None, end: float | None) -> Recorded:
-    """Raises CncError of read_for_report, and 26017 for a recording of another program."""
-    recorded = read_for_report(recording, begin, end)
-    require_own(recorded.path, recorded.metadata, recorded.states)
-    return recorded
 
 
 def program_of(recorded: Recorded) -> str:

@@ -104,6 +104,12 @@ replay_options = option_group(
     click.option("--publish", is_flag=True, help="Publish the recorded topics again."),
     click.option("--rate", type=RATE, default=1.0, show_default=True, help="Factor for --publish, 1 = real time."),
     click.option("--inputs", is_flag=True, help="Publish PLC inputs too: a machine on this ROS domain acts on them."),
+    click.option(
+        "--checkpoints",
+        type=POSITIVE,
+        metavar="S",
+        help="Compute it once and keep its state every S seconds beside it.",
+    ),
     click.option("--from", "begin", type=DURATION, help="What if: changes count from this time on, s."),
     click.option("--to", "end", type=DURATION, help="What if: to this time, s."),
     click.option("--set", "parameters", multiple=True, metavar="UNIT.NAME=VALUE", help="What if: another parameter."),
@@ -164,7 +170,8 @@ def take_changes(options: dict[str, Any]) -> dict[str, Any] | None:
     changes = {name: options.pop(name) for name in WHAT_IF}
     if all(value in (None, (), False) for value in changes.values()):
         return None
-    if options["verify"] or options["publish"]:
-        raise click.UsageError("--verify and --publish do not go with a changed run; nothing was replayed")
+    if options["verify"] or options["publish"] or options.pop("checkpoints") is not None:
+        others = "--verify, --publish and --checkpoints"
+        raise click.UsageError(f"{others} do not go with a changed run; nothing was replayed")
     changes["begin"] = changes["begin"] or 0.0
     return changes

@@ -3,30 +3,35 @@
 from __future__ import annotations
 
 import sys
-from collections import defaultdict
 from collections.abc import Iterator
 
 from cnc_ptp.commands.console import RUN_FAILED
-from cnc_ptp.machine.offline import OfflineMachine
-from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import load_machine
-from cnc_ptp.protocol.blocks import Command, CycleBlock
-from cnc_ptp.protocol.unit import PLC
+from cnc_ptp.protocol.blocks import CycleBlock
+from cnc_ptp.recording.checkpoint_file import store_checkpoints
+from cnc_ptp.recording.computed_again import commands_by_cycle, computed_again, fresh_machine
 from cnc_ptp.recording.reader import Recorded, read_recording
+from cnc_ptp.recording.run_inputs import RunInputs
 from cnc_ptp.recording.verify import verify as verify_recording
-from cnc_ptp.recording.what_if import is_refused_coupling
 
 
-def replay(recording: str, verify: bool, publish: bool, rate: float, inputs: bool = False) -> int:
-    """Verifies unless only publishing is asked for. Status 1 when a setpoint differs."""
+def replay(
+    recording: str, verify: bool, publish: bool, rate: float, inputs: bool = False, checkpoints: float | None = None
+) -> int:
+    """Verifies unless only something else is asked for. Status 1 when a setpoint differs.
+
+    `checkpoints`: seconds between those that are written beside the recording.
+    """
     status = 0
-    if verify or not publish:
+    if verify or not (publish or checkpoints):
         recorded = read_recording(recording)
         result = verify_recording(recorded, replay_blocks)
         print(result.text(), file=sys.stdout if result.equal else sys.stderr)
         if not recorded.complete:
             print(f"note: {recorded.missing}")
         status = 0 if result.equal else RUN_FAILED
+    if checkpoints and status == 0:
+        print_stored(recording, checkpoints)
     if publish:
         from cnc_ptp.nodes.player import publish_recording
 
@@ -34,16 +39,20 @@ def replay(recording: str, verify: bool, publish: bool, rate: float, inputs: boo
     return status
 
 
+def print_stored(recording: str, seconds: float) -> None:
+    """Writes the checkpoints and says how many."""
+    with RunInputs(recording) as recorded:
+        stored = store_checkpoints(recorded, seconds)
+    print(f"{stored.path}: {stored.number} checkpoints, {seconds:g} s from one to the next")
+    if stored.fault:
+        print(f"note: {stored.fault}")
+
+
 def replay_blocks(recorded: Recorded) -> Iterator[tuple[str, CycleBlock]]:
     """Re-runs the kernel with the machine file and the commands of a recording; all blocks up to its last cycle."""
     machine = load_machine(recorded.machine_yaml, f"{recorded.path}:machine.yaml")
-    offline = OfflineMachine(machine, build_units(machine, end_when_idle=False))
-    commands: dict[int, dict[str, list[Command]]] = defaultdict(lambda: defaultdict(list))
-    for record in recorded.commands:
-        if record.target != PLC and not is_refused_coupling(record, machine):
-            commands[record.cycle][record.target].append(Command.from_record(record))
-    for first_cycle in range(0, end_of(recorded), machine.block_cycles):
-        outputs = offline.replay_tick(commands.get(first_cycle, {}))
+    commands = commands_by_cycle(recorded.commands, machine)
+    for outputs in computed_again(fresh_machine(machine), commands, end_of(recorded)):
         yield from ((name, output.block) for name, output in outputs.items())
 
 

@@ -9,10 +9,9 @@ from cnc_ptp.commands.look.diff import check_diff_page, show_difference
 from cnc_ptp.machine.program_files import read_file, read_program
 from cnc_ptp.machine.run_entries import load_arguments, program_search
 from cnc_ptp.machine.wiring import unit_kinds
-from cnc_ptp.parameters import load_machine
 from cnc_ptp.plc.scenario import Entry, parse_scenario
 from cnc_ptp.recording.offline_run import write
-from cnc_ptp.recording.origin import origin
+from cnc_ptp.recording.origin import WITHOUT, origin
 from cnc_ptp.recording.overwriting import check_recording
 from cnc_ptp.recording.run_inputs import RunInputs
 from cnc_ptp.recording.what_if import Change, WhatIf
@@ -42,8 +41,7 @@ def what_if(
         refused = compute(run, recorded, path)
         print(f"note: {run.note}" if run.note else "computed from 0 s")
         if recorded.plc_file:
-            text = "is not executed again; what it took time for is acknowledged at once"
-            print(f"note: the PLC {recorded.plc_file} {text}")
+            print(f"note: the PLC {recorded.plc_file} is not executed again; its commands are those of the recording")
         for text in refused:
             print(f"note: {text}")
         for channel in run.running:
@@ -59,6 +57,10 @@ def compute(run: WhatIf, recorded: RunInputs, path: str) -> list[str]:
     known = {(record.cycle, record.target, record.command) for record in recorded.commands if not record.accepted}
     refused: list[str] = []
     notes = {"what_if_of": recorded.path.name, **origin()}
+    if run.begin:
+        notes[WITHOUT] = (
+            f"it is what became of {recorded.path.name} from cycle {run.begin} on, what was before is there"
+        )
     with Recording(path, run.machine_text, recorded.start_ns, recorded.cycle_time_ns, notes=notes) as recording:
         for outputs in run.run():
             write(recording, outputs)
@@ -73,7 +75,7 @@ def load_of(recorded: RunInputs, program: str | None) -> dict[str, object] | Non
     """Arguments of `load` for a program file."""
     if program is None:
         return None
-    machine = load_machine(recorded.machine_yaml, f"{recorded.path}:machine.yaml")
+    machine = recorded.required_machine()
     text, files = read_program(program, program_search(machine))
     return load_arguments(program, text, files)
 
@@ -82,7 +84,7 @@ def entries_of(recorded: RunInputs, commands: str | None) -> list[Entry]:
     """Those of a scenario file, whose times are those of the run."""
     if commands is None:
         return []
-    machine = load_machine(recorded.machine_yaml, f"{recorded.path}:machine.yaml")
+    machine = recorded.required_machine()
     folder = Path(commands).parent
     text = read_file("scenario", commands)
     return parse_scenario(text, commands, unit_kinds(machine), lambda what, path: read_file(what, str(folder / path)))
