@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from cnc_ptp.client.link import Reply
-from cnc_ptp.protocol.blocks import CycleBlock, Event, HandshakeRequest
+from cnc_ptp.protocol.blocks import CommandRecord, CycleBlock, Event, HandshakeRequest
 
 State = Mapping[str, Mapping[str, Any]]
 """Unit -> its fields, as protocol.py sends them."""
@@ -21,6 +21,9 @@ class News:
     events: Sequence[Event] = ()
     requests: Sequence[HandshakeRequest] = ()
     blocks: Sequence[tuple[str, CycleBlock]] = ()
+    records: Sequence[CommandRecord] = ()
+    diagnostics: Sequence[dict[str, Any]] = ()
+    """Of nodes, newly told."""
 
 
 class Face(ABC):

@@ -28,6 +28,8 @@ class WebOptions:
     host: str = HOST
     names: tuple[str, ...] = field(default=())
     """More names of this computer under which pages may be asked for."""
+    programs: str = "."
+    """Folder of NC programs."""
 
     @property
     def address(self) -> str:
@@ -65,10 +67,12 @@ async def serve(
 
     from cnc_ptp.web.access import LOCAL_NAMES, Access, Names
     from cnc_ptp.web.hub import Hub
+    from cnc_ptp.web.programs import ProgramFolder
     from cnc_ptp.web.server import Server
 
     entry(NO_PORT)  # the catalogue is read now, and not when the first page gets an error
-    server = Server(Hub(connect), Access(needs_login=False), Names((*LOCAL_NAMES, *options.names)))  # type: ignore[arg-type]
+    hub = Hub(connect, folder=ProgramFolder(options.programs))  # type: ignore[arg-type]
+    server = Server(hub, Access(needs_login=False), Names((*LOCAL_NAMES, *options.names)))
     runner = web.AppRunner(server.app, access_log=None)
     await runner.setup()
     await web.SockSite(runner, listening).start()

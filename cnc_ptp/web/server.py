@@ -13,6 +13,7 @@ from cnc_ptp.web.access import Access, Names, make_middleware
 from cnc_ptp.web.hub import Hub
 from cnc_ptp.web.logins import Login
 from cnc_ptp.web.numbers import BAD_MESSAGE, TOO_MANY_SESSIONS
+from cnc_ptp.web.program_routes import ProgramRoutes
 from cnc_ptp.web.protocol import LARGEST_MESSAGE, NOTHING, error_fields, field, frame, read_message
 from cnc_ptp.web.session import Session
 
@@ -38,6 +39,7 @@ class Server:
         self.app.router.add_get("/api/session", self._session)
         self.app.router.add_get("/ws", self._socket)
         self.app.router.add_static("/static", STATIC)
+        ProgramRoutes(hub, access).add_to(self.app)
 
     async def _begin(self, _app: web.Application) -> None:
         self.hub.begin()

@@ -17,6 +17,7 @@ from cnc_ptp.web.numbers import TOO_MANY_MESSAGES
 from cnc_ptp.web.page_messages import PageMessages
 from cnc_ptp.web.protocol import Message, error_fields, frame, read_message, refusal
 from cnc_ptp.web.rate import Rate
+from cnc_ptp.web.scope import Stream
 
 if TYPE_CHECKING:
     from cnc_ptp.web.hub import Hub
@@ -38,6 +39,7 @@ class Session:
         self.user, self.role, self.number = user, role, number
         self.is_behind = True
         """It gets the whole state next."""
+        self.scope: Stream | None = None
         self._socket = socket
         self._outgoing: deque[str | bytes] = deque()
         self._something = asyncio.Event()
@@ -78,7 +80,12 @@ class Session:
         self.send({"type": "state", "time": round(time, 3), "units": shown})
 
     def take_blocks(self, blocks: Sequence[tuple[str, CycleBlock]]) -> None:
-        """New blocks, for its scope."""
+        """New blocks, for its scope; a page that does not follow gets none, and its scope shows the gap."""
+        if self.scope is None:
+            return
+        for data in self.scope.take(blocks):
+            if not self.is_stalled:
+                self.send_frame(data)
 
     # from the page
 

@@ -12,10 +12,10 @@ NICENESS = 5
 """Below the nodes of a machine."""
 
 
-def web(port: int, host: str, names: tuple[str, ...]) -> int:
+def web(port: int, host: str, names: tuple[str, ...], programs: str) -> int:
     """Serves the pages of the machine that runs, until Ctrl-C."""
     require_packages()
-    options = WebOptions(port, host, names)
+    options = WebOptions(port, host, names, programs)
     listening = listen(host, port)
     os.nice(NICENESS)
     from cnc_ptp.web.live_face import live_face
