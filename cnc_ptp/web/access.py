@@ -8,10 +8,11 @@ from dataclasses import dataclass
 from urllib.parse import urlsplit
 
 from aiohttp import hdrs, web
+from aiohttp.typedefs import Middleware
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.web.logins import Login, Logins
-from cnc_ptp.web.numbers import NOT_LOGGED_IN, WRONG_ORIGIN
+from cnc_ptp.web.numbers import NO_PROGRAM, NOT_LOGGED_IN, WRONG_ORIGIN, WRONG_ROLE
 from cnc_ptp.web.protocol import NOTHING, error_fields
 
 COOKIE = "cnc_ptp"
@@ -52,7 +53,7 @@ class Names:
             raise CncError(WRONG_ORIGIN, f"origin '{origin[:60]}' is not {own}", NOTHING)
 
 
-def make_middleware(names: Names) -> Callable[[web.Request, Handler], Awaitable[web.StreamResponse]]:
+def make_middleware(names: Names) -> Middleware:
     """Checks every request; refusals become JSON with their number."""
 
     @web.middleware
@@ -73,7 +74,7 @@ def make_middleware(names: Names) -> Callable[[web.Request, Handler], Awaitable[
     return guard
 
 
-STATUS = {WRONG_ORIGIN: 403, NOT_LOGGED_IN: 401}
+STATUS = {WRONG_ORIGIN: 403, NOT_LOGGED_IN: 401, WRONG_ROLE: 403, NO_PROGRAM: 404}
 
 
 def refuse(error: CncError, status: int = 0) -> web.Response:

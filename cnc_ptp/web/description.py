@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -17,10 +17,9 @@ from cnc_ptp.web.rights import NOT_FROM_PAGE_ARGUMENTS, refused_from_pages
 
 
 def describe_units(
-    kinds: Mapping[str, str], parameters_of: Callable[[str], ParameterSet], cycle_time: float
+    kinds: Mapping[str, str], sets: Mapping[str, ParameterSet], cycle_time: float
 ) -> list[dict[str, Any]]:
-    """`cycle_time` in s. Limits in mm, mm/s … or deg, deg/s …; of spindles none."""
-    sets = {unit: parameters_of(unit) for unit, kind in kinds.items() if kind != "plc"}
+    """`sets`: parameters by unit; `cycle_time` in s. Limits in mm, mm/s … or deg, deg/s …; of spindles in rpm."""
     described = {"axis": axis_limits, "spindle": spindle_limits}
     units = []
     for unit, kind in kinds.items():

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from cnc_ptp.client.link import Reply
+from cnc_ptp.parameters import ParameterSet
 from cnc_ptp.protocol.blocks import CommandRecord, CycleBlock, Event, HandshakeRequest
 
 State = Mapping[str, Mapping[str, Any]]
@@ -33,6 +34,8 @@ class Face(ABC):
     """Unit -> kind, in the order of the machine."""
     cycle_time: float
     """Seconds."""
+    sets: Mapping[str, ParameterSet]
+    """Parameters of the units, without the plc."""
     is_recording = False
 
     @abstractmethod

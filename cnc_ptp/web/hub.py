@@ -14,6 +14,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import ChannelBlock, CommandRecord, Event, HandshakeRequest
 from cnc_ptp.web.alarms import Alarms, event_fields
 from cnc_ptp.web.command_right import CommandRight
+from cnc_ptp.web.drawing_office import DrawingOffice
 from cnc_ptp.web.face import Face, State
 from cnc_ptp.web.numbers import NO_MACHINE_YET
 from cnc_ptp.web.program_watch import ProgramWatch
@@ -37,6 +38,7 @@ class Hub:
         self._name = name
         self.folder = folder
         self.programs = ProgramWatch(folder)
+        self.office = DrawingOffice()
         self.face: Face | None = None
         self.sessions: list[Session] = []
         self.right = CommandRight()
@@ -62,6 +64,7 @@ class Hub:
             self._task.cancel()
             with contextlib.suppress(asyncio.CancelledError):
                 await self._task
+        self.office.close()
         if self.face is not None:
             await asyncio.to_thread(self.face.close)
             self.face = None

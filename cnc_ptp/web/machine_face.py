@@ -34,7 +34,8 @@ class MachineFace(Face):
         self._records = seen.records()
         self._blocks = {unit: seen.blocks_of(unit) for unit in self.kinds}
         self._turns = {unit: asyncio.Lock() for unit in self.kinds}
-        self._units = describe_units(self.kinds, self._link.parameters_of, self.cycle_time)
+        self.sets = {unit: self._link.parameters_of(unit) for unit, kind in self.kinds.items() if kind != "plc"}
+        self._units = describe_units(self.kinds, self.sets, self.cycle_time)
 
     def machine(self) -> dict[str, Any]:
         block = next(iter(self._link.seen.blocks.values()))

@@ -6,8 +6,10 @@ import asyncio
 
 from aiohttp import web
 
+from cnc_ptp.client.faults import unknown_unit
 from cnc_ptp.errors import CncError
 from cnc_ptp.web.access import Access, refuse
+from cnc_ptp.web.backplot import Drawing
 from cnc_ptp.web.hub import Hub
 from cnc_ptp.web.numbers import PROGRAM_EXISTS, TOO_LARGE, TOO_MANY_MESSAGES
 from cnc_ptp.web.programs import require_name
@@ -28,6 +30,7 @@ class ProgramRoutes:
         app.router.add_get("/api/programs", self._list)
         app.router.add_post("/api/programs", self._upload)
         app.router.add_get("/api/programs/{name}", self._text)
+        app.router.add_get("/api/backplot", self._backplot)
 
     async def _list(self, request: web.Request) -> web.StreamResponse:
         self._access.login_of(request)
@@ -59,6 +62,21 @@ class ProgramRoutes:
             return refuse(error, {TOO_LARGE: 413, PROGRAM_EXISTS: 409}.get(error.number, 400))
         self._hub.to_all({"type": "programs"})
         return web.json_response(listed._asdict())
+
+    async def _backplot(self, request: web.Request) -> web.StreamResponse:
+        """`?channel=C`: the path of its program (backplot.py says in which form)."""
+        self._access.login_of(request)
+        face = self._hub.require_face()
+        channel = request.query.get("channel", "channel")
+        if face.kinds.get(channel) != "channel":
+            raise unknown_unit(channel, [unit for unit, kind in face.kinds.items() if kind == "channel"], "channel")
+        path, text = await asyncio.to_thread(self._hub.programs.loaded_text, channel)
+        drawing = Drawing(channel, face.kinds, face.sets, face.cycle_time, text, path)
+        points = await self._hub.office.draw(drawing)
+        headers = {"Cache-Control": "no-store"}
+        response = web.Response(body=points, content_type="application/octet-stream", headers=headers)
+        response.enable_compression()
+        return response
 
     async def _content(self, request: web.Request) -> bytes:
         """Refused as soon as it is known to be too large."""

@@ -4,6 +4,8 @@ import asyncio
 
 from web_support import site
 
+from cnc_ptp.web.backplot import HEAD
+
 
 def test_a_page_sees_the_machine_and_moves_an_axis():
     async def story():
@@ -50,6 +52,8 @@ def test_a_program_is_listed_loaded_and_run():
             assert (await page.wait_for("program"))["name"] == "pocket.nc"
             text = await (await here.client.get("/api/programs/pocket.nc")).text()
             assert text.startswith("; A pocket in layers")
+            drawn = await (await here.client.get("/api/backplot", params={"channel": "channel"})).read()
+            assert HEAD.unpack_from(drawn)[:3] == (1, (len(drawn) - HEAD.size) // 20, 0)
             assert (await page.command("channel", "start"))["ok"]
             await page.state_of("channel", lambda channel: channel["line"] > 3 and channel["active"])
 
