@@ -88,7 +88,7 @@ def program_check(drawing: Drawing) -> tuple[ProgramCheck, bool]:
     return ProgramCheck(channel, axes, spindles), turning
 
 
-def check_folders(drawing: Drawing) -> Sequence[str]:
+def check_folders(drawing: Drawing) -> tuple[str, ...]:
     return channel_view(drawing.sets[drawing.channel], drawing.sets, Path()).folders
 
 

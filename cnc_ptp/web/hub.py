@@ -140,7 +140,8 @@ class Hub:
         self._state = state
         for program in self.programs.changes(changes):
             self.to_all({"type": "program", **program})
-        for session in self.sessions:
+        for session in [*self.sessions]:
+            session.end_without_login()
             session.send_state(face.time, state, changes)
             session.take_blocks(news.blocks)
 

@@ -8,8 +8,9 @@ from aiohttp import web
 
 from cnc_ptp.client.faults import unknown_unit
 from cnc_ptp.errors import CncError
-from cnc_ptp.web.access import Access, refuse
+from cnc_ptp.web.access import Access
 from cnc_ptp.web.backplot import Drawing
+from cnc_ptp.web.guard import refuse
 from cnc_ptp.web.hub import Hub
 from cnc_ptp.web.numbers import PROGRAM_EXISTS, TOO_LARGE, TOO_MANY_MESSAGES
 from cnc_ptp.web.programs import require_name

@@ -7,12 +7,14 @@ from pathlib import Path
 import numpy as np
 from aiohttp.test_utils import TestClient, TestServer
 
-from cnc_ptp.web.access import Access, Names
+from cnc_ptp.web.access import Access
+from cnc_ptp.web.guard import Names
 from cnc_ptp.web.hub import Hub
 from cnc_ptp.web.machine_face import offline_face
 from cnc_ptp.web.programs import ProgramFolder
 from cnc_ptp.web.scope import HEAD
 from cnc_ptp.web.server import Server
+from cnc_ptp.web.users import Users
 
 ROOT = Path(__file__).parents[2]
 MILL = str(ROOT / "config" / "mill.yaml")
@@ -103,10 +105,10 @@ class Site:
 
 
 @asynccontextmanager
-async def site(machine=MILL, *, connect=None, needs_login=False, programs=EXAMPLES):
+async def site(machine=MILL, *, connect=None, users=None, programs=EXAMPLES):
     """`connect` gives the face; the one of an offline machine without it."""
     hub = Hub(connect or (lambda: offline_face(machine)), name="mill", folder=ProgramFolder(programs))
-    access = Access(needs_login=needs_login)
+    access = Access(None if users is None else Users(str(users)))
     server = Server(hub, access, Names())
     client = TestClient(TestServer(server.app))
     await client.start_server()

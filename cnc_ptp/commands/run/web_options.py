@@ -13,6 +13,9 @@ from cnc_ptp.web.serve import DEFAULT_PORT, HOST
 def web_options(function: Callable[..., Any]) -> Callable[..., Any]:
     """Options of `cnc_ptp web`."""
     for option in (
+        click.option("--users", type=click.Path(dir_okay=False), help="File of users; without it there is no login."),
+        click.option("--tls-key", "key", type=click.Path(dir_okay=False), help="Its private key, PEM."),
+        click.option("--tls-cert", "certificate", type=click.Path(dir_okay=False), help="Certificate for TLS, PEM."),
         click.option(
             "--programs",
             type=click.Path(file_okay=False),
