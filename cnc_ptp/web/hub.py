@@ -5,8 +5,9 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import json
+import traceback
 from collections.abc import Callable, Mapping
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from typing import Any
 
 from cnc_ptp.client.faults import GONE
@@ -83,6 +84,7 @@ class Hub:
         self.face, self._state, self.alarms = face, {}, Alarms()
         self.handshakes.clear()
         self.programs.forget()
+        self.programs.text_of = face.text_of
         for session in self.sessions:
             session.send({"type": "back"})
             session.send(self.hello(session))
@@ -94,6 +96,10 @@ class Hub:
             running.result()
         except CncError as error:
             self._tell_gone(error)
+            await asyncio.to_thread(face.close)
+        except Exception as error:  # a mistake of ours must not leave pages that show the past
+            traceback.print_exc()
+            self._tell_gone(CncError(GONE, f"the server has failed: {error!r}", "the machine continues"))
             await asyncio.to_thread(face.close)
         finally:
             running.cancel()
@@ -195,4 +201,4 @@ class Hub:
 
 
 def request_fields(request: HandshakeRequest) -> dict[str, Any]:
-    return {name: getattr(request, name) for name in HandshakeRequest.__slots__}
+    return {each.name: getattr(request, each.name) for each in fields(HandshakeRequest)}

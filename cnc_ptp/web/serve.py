@@ -10,9 +10,11 @@ import socket
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from cnc_ptp.catalogue import entry
 from cnc_ptp.errors import CncError
+from cnc_ptp.web.face import Face
 from cnc_ptp.web.numbers import NO_AIOHTTP, NO_PORT
 from cnc_ptp.web.security import tls_context
 
@@ -36,6 +38,8 @@ class WebOptions:
     """Files (PEM) for TLS."""
     users: str | None = None
     """File of users; None: no login."""
+    machine: str | None = None
+    """Machine file, beside which changed ones are written."""
 
     @property
     def address(self) -> str:
@@ -67,8 +71,13 @@ def listen(host: str, port: int) -> socket.socket:
     return listening
 
 
+def machine_name(options: WebOptions) -> str:
+    """What pages call the machine."""
+    return Path(options.machine).stem if options.machine else "machine"
+
+
 async def serve(
-    connect: Callable[[], object], options: WebOptions, listening: socket.socket, *, tell: Callable[[str], None]
+    connect: Callable[[], Face], options: WebOptions, listening: socket.socket, *, tell: Callable[[str], None]
 ) -> None:
     """Until SIGINT or SIGTERM. `connect` gives the face of the machine; `tell` gets the address."""
     from aiohttp import web
@@ -82,7 +91,7 @@ async def serve(
 
     tls = tls_context(options.certificate, options.key)
     entry(NO_PORT)  # the catalogue is read now, and not when the first page gets an error
-    hub = Hub(connect, folder=ProgramFolder(options.programs))  # type: ignore[arg-type]
+    hub = Hub(connect, folder=ProgramFolder(options.programs), name=machine_name(options))
     access = Access(None if options.users is None else Users(options.users))
     server = Server(hub, access, Names((*LOCAL_NAMES, options.host, *options.names)))
     runner = web.AppRunner(server.app, access_log=None)
