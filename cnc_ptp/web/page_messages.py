@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from cnc_ptp.client.faults import unknown_unit
 from cnc_ptp.errors import CncError, nearest_name
+from cnc_ptp.web.commissioning_messages import CommissioningMessages
 from cnc_ptp.web.jog import Jogs
 from cnc_ptp.web.numbers import A_RECORDING, BAD_MESSAGE
 from cnc_ptp.web.protocol import NOTHING, Message, answer, field
@@ -42,6 +43,7 @@ class PageMessages:
             "seek": self._seek,
             "play": self._play,
             "ping": self._ping,
+            **CommissioningMessages(session).handlers,
         }
 
     def handle(self, message: Message) -> Answering | None:

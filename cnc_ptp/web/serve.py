@@ -91,7 +91,7 @@ async def serve(
 
     tls = tls_context(options.certificate, options.key)
     entry(NO_PORT)  # the catalogue is read now, and not when the first page gets an error
-    hub = Hub(connect, folder=ProgramFolder(options.programs), name=machine_name(options))
+    hub = Hub(connect, folder=ProgramFolder(options.programs), name=machine_name(options), machine_file=options.machine)
     access = Access(None if options.users is None else Users(options.users))
     server = Server(hub, access, Names((*LOCAL_NAMES, options.host, *options.names)))
     runner = web.AppRunner(server.app, access_log=None)

@@ -107,7 +107,9 @@ class Site:
 @asynccontextmanager
 async def site(machine=MILL, *, connect=None, users=None, programs=EXAMPLES, waits=True):
     """`connect` gives the face; the one of an offline machine without it."""
-    hub = Hub(connect or (lambda: offline_face(machine)), name="mill", folder=ProgramFolder(programs))
+    hub = Hub(
+        connect or (lambda: offline_face(machine)), name="mill", folder=ProgramFolder(programs), machine_file=machine
+    )
     access = Access(None if users is None else Users(str(users)))
     server = Server(hub, access, Names())
     client = TestClient(TestServer(server.app))
