@@ -19,6 +19,7 @@ from cnc_ptp.commands.completion import (
 )
 from cnc_ptp.commands.console import print_error
 from cnc_ptp.commands.run.web_options import web_options, web_port_option
+from cnc_ptp.commands.run.web_users import web_users
 from cnc_ptp.errors import WRONG_INPUT, CncError
 from cnc_ptp.number_range import DURATION, PERCENT, POSITIVE, RATE, STATES_PER_SECOND
 from cnc_ptp.ros_arguments import client_namespace_option, namespace_option, ros_arguments
@@ -329,6 +330,9 @@ def web_command(**options: Any) -> None:
     from cnc_ptp.commands.run.web import web
 
     sys.exit(web(**options))
+
+
+main.add_command(web_users)
 
 
 @main.command("explain")

@@ -9,8 +9,8 @@ from web_support import MILL, site
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.web.machine_face import offline_face
+from cnc_ptp.web.options import listen
 from cnc_ptp.web.security import require_secured, tls_context
-from cnc_ptp.web.serve import listen
 
 
 def run(story, **options):

@@ -12,7 +12,7 @@ from types import TracebackType
 from typing import NamedTuple
 
 from cnc_ptp.ros_arguments import ros_arguments
-from cnc_ptp.web.serve import HOST, listen, require_packages
+from cnc_ptp.web.options import HOST, listen, require_packages
 
 NICENESS = 10
 """While it starts beside a graph that has just begun."""

@@ -9,8 +9,9 @@ from collections.abc import Callable
 
 from cnc_ptp.ros_arguments import ros_arguments
 from cnc_ptp.web.face import Face
+from cnc_ptp.web.options import WebOptions, listen, require_packages
 from cnc_ptp.web.security import require_secured
-from cnc_ptp.web.serve import WebOptions, listen, require_packages, serve
+from cnc_ptp.web.serve import serve
 
 NICENESS = 5
 """Below the nodes of a machine."""

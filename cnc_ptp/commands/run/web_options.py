@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from cnc_ptp.web.serve import DEFAULT_PORT, HOST
+from cnc_ptp.web.options import DEFAULT_PORT, HOST
 
 web_port_option = click.option(
     "--web",
