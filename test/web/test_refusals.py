@@ -174,3 +174,13 @@ def test_tasks_that_are_not_possible(tmp_path):
         assert await refused(page, "accept", task=task, file="a.yaml") == (26256, text)
 
     run(story)
+
+
+def test_a_snapshot_without_recorder():
+    async def story(here):
+        await here.token()
+        answer = await (await here.client.get("/api/snapshot.mcap")).json()
+        text = "snapshot: there is no recorder; nothing was written; run with --keep SECONDS"
+        assert (answer["number"], answer["text"]) == (26258, text)
+
+    run(story)
