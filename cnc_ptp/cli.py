@@ -43,11 +43,13 @@ from cnc_ptp.commands.run.options import (
     take_changes,
     take_recorder,
 )
+from cnc_ptp.commands.run.web_options import web_options
+from cnc_ptp.commands.run.web_users import web_users
 from cnc_ptp.number_range import POSITIVE, RATE
 from cnc_ptp.ros_arguments import client_namespace_option, ros_arguments
 from cnc_ptp.start_options import start_options, take_start
 
-CLIENTS = ("status", "do", "jog", "watch")
+CLIENTS = ("status", "do", "jog", "watch", "web")
 STARTS_NODES = ("run", "replay", *CLIENTS)
 """Commands that take ROS arguments."""
 
@@ -179,6 +181,22 @@ def watch_command(machine: str | None, **options: Any) -> None:
     from cnc_ptp.commands.client.status import watch
 
     sys.exit(watch(**options))
+
+
+@main.command("web")
+@web_options
+@client_namespace_option
+def web_command(**options: Any) -> None:
+    """Serve pages of the running machine, or of a RECORDING, to browsers.
+
+    On this computer alone, at http://localhost:8080.
+    """
+    from cnc_ptp.commands.run.web import web
+
+    sys.exit(web(**options))
+
+
+main.add_command(web_users)
 
 
 @main.command("explain")

@@ -144,9 +144,8 @@ def _event_row(event: Event) -> tuple[Any, ...]:
     return *head, [tuple(value) for value in event.values]
 
 
-def _event_of(*fields: Any) -> Event:
-    *head, values = fields
-    return Event(*head, values=[EventValue(*value) for value in values])
+def _event_of(cycle: int, source: str, severity: int, error_id: int, text: str, line: int, values: list[Any]) -> Event:
+    return Event(cycle, source, severity, error_id, text, line, [EventValue(*value) for value in values])
 
 
 def write_record(recording: Recording, record: CommandRecord | Event) -> None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from cnc_ptp.commands.arguments import DIALECT, MACHINE, PROGRAM, RECORDING, SCENARIO, option_group
+from cnc_ptp.commands.run.web_options import web_port_option
 from cnc_ptp.number_range import DURATION, PERCENT, POSITIVE, RATE, STATES_PER_SECOND
 from cnc_ptp.ros_arguments import namespace_option
 from cnc_ptp.start_options import start_options
@@ -51,6 +52,7 @@ graph_options = option_group(
         metavar="[PORT]",
         help="Stream the messages of a recording to Foxglove at ws://localhost:PORT; without PORT 8765.",
     ),
+    web_port_option,
     click.option("--free-run", is_flag=True, help="As fast as all nodes follow, instead of in real time."),
     click.option("--composed", is_flag=True, help="All nodes in one process."),
     namespace_option,

@@ -1,0 +1,87 @@
+"""What pages see of a machine, whether it runs or was recorded."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from cnc_ptp.client.link import Reply
+from cnc_ptp.errors import CncError
+from cnc_ptp.parameters import ParameterSet
+from cnc_ptp.protocol.blocks import CommandRecord, CycleBlock, Event, HandshakeRequest
+from cnc_ptp.web.numbers import NO_SNAPSHOT
+
+State = Mapping[str, Mapping[str, Any]]
+"""Unit -> its fields, as protocol.py sends them."""
+
+
+@dataclass(slots=True)
+class News:
+    """What has come since the last look."""
+
+    events: Sequence[Event] = ()
+    requests: Sequence[HandshakeRequest] = ()
+    blocks: Sequence[tuple[str, CycleBlock]] = ()
+    records: Sequence[CommandRecord] = ()
+    diagnostics: Sequence[dict[str, Any]] = ()
+    """Of nodes, newly told."""
+
+
+class Face(ABC):
+    """A machine as pages see it. All is called from the event loop, and returns at once, but for what is `async`."""
+
+    kinds: Mapping[str, str]
+    """Unit -> kind, in the order of the machine."""
+    cycle_time: float
+    """Seconds."""
+    sets: Mapping[str, ParameterSet]
+    """Parameters of the units, without the plc."""
+    is_recording = False
+
+    @abstractmethod
+    def machine(self) -> dict[str, Any]:
+        """Name, units and cycle times, as `hello` has them."""
+
+    @property
+    @abstractmethod
+    def time(self) -> float:
+        """Seconds of the machine."""
+
+    @abstractmethod
+    def state(self) -> State:
+        """Of all units, now."""
+
+    @abstractmethod
+    def news(self) -> News:
+        """What has come since the last call."""
+
+    @abstractmethod
+    async def ask(self, unit: str, command: str, arguments: Mapping[str, Any], *, user: str) -> Reply:
+        """Gives a command. Raises the refusal of the unit, and CncError 22001, 22002, 26111, 26136, 26171."""
+
+    async def snapshot(self, file: str, seconds: float) -> None:
+        """The recorder writes its last seconds into a file; 0: all that it keeps. Raises CncError 26136."""
+        effect = "nothing was written; run with --keep SECONDS"
+        raise CncError(NO_SNAPSHOT, "snapshot: there is no recorder", effect)
+
+    @abstractmethod
+    def jog(self, axis: str, velocity: float, *, user: str) -> None:
+        """One message of a jog (mm/s, deg/s; 0 ends it); the axis stops 0.2 s after the last one."""
+
+    def text_of(self, path: str) -> str | None:
+        """Of a program that was loaded, where the machine does not take it from a file."""
+        return None
+
+    @abstractmethod
+    def note(self, cycle: int, text: str) -> None:
+        """An event for recordings: who has done what."""
+
+    @abstractmethod
+    async def run(self) -> None:
+        """Keeps the face going until the machine is gone. Raises CncError 26171 then."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """The end; may take a while."""

@@ -1,0 +1,223 @@
+"""The machine and all pages that look at it: what has come goes to all of them."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import traceback
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, fields
+from typing import Any
+
+from cnc_ptp.client.faults import GONE
+from cnc_ptp.errors import CncError
+from cnc_ptp.protocol.blocks import ChannelBlock, CommandRecord, Event, HandshakeRequest
+from cnc_ptp.web.alarms import Alarms, event_fields
+from cnc_ptp.web.command_right import CommandRight
+from cnc_ptp.web.drawing_office import DrawingOffice
+from cnc_ptp.web.face import Face, State
+from cnc_ptp.web.numbers import NO_MACHINE_YET
+from cnc_ptp.web.offset_table import OffsetTable
+from cnc_ptp.web.program_watch import ProgramWatch
+from cnc_ptp.web.programs import ProgramFolder
+from cnc_ptp.web.protocol import VERSION, difference, error_fields
+from cnc_ptp.web.session import Session
+from cnc_ptp.web.tasks import Tasks
+
+PERIOD = 0.04
+"""Seconds between two states: 25 a second, so that it is more than 20 on a busy computer too."""
+AGAIN = 1.0
+"""Seconds until a machine that was not found is looked for again."""
+WAITING = CncError(NO_MACHINE_YET, "no machine runs", "the page is filled as soon as there is one")
+
+
+class Hub:
+    """Keeps the face of a machine, looks for it again when it is gone, and tells the sessions what has come."""
+
+    def __init__(
+        self, connect: Callable[[], Face], *, folder: ProgramFolder, name: str = "", machine_file: str | None = None
+    ) -> None:
+        """`connect` may block; it raises CncError while there is no machine. `name`: what pages call the machine."""
+        self._connect = connect
+        self._name = name
+        self.folder = folder
+        self.programs = ProgramWatch(folder)
+        self.office = DrawingOffice()
+        self.tasks = Tasks(machine_file)
+        self._kept: set[asyncio.Task[None]] = set()
+        self.face: Face | None = None
+        self.sessions: list[Session] = []
+        self.right = CommandRight()
+        self.alarms = Alarms()
+        self.handshakes: dict[int, dict[str, Any]] = {}
+        self.tables: dict[str, OffsetTable] = {}
+        self.offsets: dict[str, dict[str, Any]] = {}
+        """Channel -> what lies between programmed and machine positions."""
+        self._state: State = {}
+        self.why_none = WAITING
+        """Why there is no machine now."""
+        self._task: asyncio.Task[None] | None = None
+
+    # its life
+
+    def begin(self) -> None:
+        self._task = asyncio.create_task(self._live())
+
+    async def end(self) -> None:
+        """All sessions end; their jogs too."""
+        for session in [*self.sessions]:
+            await session.close()
+        if self._task is not None:
+            self._task.cancel()
+            with contextlib.suppress(asyncio.CancelledError):
+                await self._task
+        self.office.close()
+        self.tasks.close()
+        if self.face is not None:
+            await asyncio.to_thread(self.face.close)
+            self.face = None
+
+    async def _live(self) -> None:
+        while True:
+            try:
+                face = await asyncio.to_thread(self._connect)
+            except CncError as error:
+                self.why_none = error
+                await asyncio.sleep(AGAIN)
+                continue
+            await self._live_with(face)
+
+    async def _live_with(self, face: Face) -> None:
+        self.face, self._state, self.alarms = face, {}, Alarms()
+        self.handshakes.clear()
+        self.programs.forget()
+        self.offsets.clear()
+        channels = [unit for unit, kind in face.kinds.items() if kind == "channel"]
+        self.tables = {unit: OffsetTable(face.sets[unit], face.sets) for unit in channels}
+        self.programs.text_of = face.text_of
+        for session in self.sessions:
+            session.send({"type": "back"})
+            session.send(self.hello(session))
+        running = asyncio.create_task(face.run())
+        try:
+            while not running.done():
+                await asyncio.sleep(PERIOD)
+                self.tell(face)
+            running.result()
+        except CncError as error:
+            self._tell_gone(error)
+            await asyncio.to_thread(face.close)
+        except Exception as error:  # a mistake of ours must not leave pages that show the past
+            traceback.print_exc()
+            self._tell_gone(CncError(GONE, f"the server has failed: {error!r}", "the machine continues"))
+            await asyncio.to_thread(face.close)
+        finally:
+            running.cancel()
+
+    def _tell_gone(self, error: CncError) -> None:
+        self.face, self.why_none = None, error
+        self.to_all({"type": "gone", **error_fields(error)})
+
+    # what goes to pages
+
+    def hello(self, session: Session) -> dict[str, Any]:
+        """The first message to a page, and another one when a machine has come."""
+        shared = {"type": "hello", "version": VERSION, "user": session.user, "role": session.role}
+        shared["page"] = session.number
+        if self.face is None:
+            return {**shared, "machine": None, "operator": self.right.shown(), "why": error_fields(self.why_none)}
+        session.is_behind = True
+        return {
+            **shared,
+            "machine": {"name": self._name, "recording": self.face.is_recording, **self.face.machine()},
+            "operator": self.right.shown(),
+            "alarms": self.alarms.list(),
+            "handshakes": [*self.handshakes.values()],
+            "programs": self.programs.all(),
+            "offsets": self.offsets,
+        }
+
+    def tell(self, face: Face) -> None:
+        """What has come since the last time, to all pages."""
+        news = face.news()
+        for event in news.events:
+            self._tell_event(event, face.cycle_time)
+        for request in news.requests:
+            self._tell_request(request)
+        for record in news.records:
+            self._tell_answered(record)
+        for unit, block in news.blocks:
+            if isinstance(block, ChannelBlock):
+                self._tell_offsets(unit, block)
+        if news.diagnostics:
+            self.to_all({"type": "diagnostics", "nodes": [*news.diagnostics]})
+        state = face.state()
+        changes = difference(state, self._state)
+        self._state = state
+        for program in self.programs.changes(changes):
+            self.to_all({"type": "program", **program})
+        for session in [*self.sessions]:
+            session.end_without_login()
+            session.send_state(face.time, state, changes)
+            session.take_blocks(news.blocks)
+
+    def _tell_event(self, event: Event, cycle_time: float) -> None:
+        fields = event_fields(event, cycle_time)
+        alarm = self.alarms.take(fields)
+        self.to_all({"type": "event", **(alarm or fields)})
+
+    def _tell_request(self, request: HandshakeRequest) -> None:
+        if request.acknowledge_needed:
+            self.handshakes[request.id] = request_fields(request)
+            self.to_all({"type": "handshake", **request_fields(request)})
+
+    def _tell_answered(self, record: CommandRecord) -> None:
+        """A request that was acknowledged, an offset that was changed, by whomever."""
+        if record.target in self.tables:
+            self.tables[record.target].take_record(record)
+        if record.command == "acknowledge" and record.accepted:
+            number = json.loads(record.arguments_json).get("id")
+            if self.handshakes.pop(number, None) is not None:
+                self.to_all({"type": "handshake_done", "id": number})
+
+    def _tell_offsets(self, channel: str, block: ChannelBlock) -> None:
+        for offsets in block.offsets:
+            self.tables[channel].take_active(offsets)
+            self.offsets[channel] = {"channel": channel, **asdict(offsets)}
+            self.to_all({"type": "offsets", **self.offsets[channel]})
+
+    def to_all(self, message: Mapping[str, Any]) -> None:
+        for session in self.sessions:
+            session.send(message)
+
+    def tell_operator(self) -> None:
+        self.to_all({"type": "operator", **self.right.shown()})
+
+    # sessions
+
+    def add(self, session: Session) -> None:
+        self.sessions.append(session)
+        session.send(self.hello(session))
+
+    def remove(self, session: Session) -> None:
+        if session in self.sessions:
+            self.sessions.remove(session)
+        if self.right.leave(session):
+            self.tell_operator()
+
+    def keep(self, task: asyncio.Task[None]) -> None:
+        """Until its end."""
+        self._kept.add(task)
+        task.add_done_callback(self._kept.discard)
+
+    def require_face(self) -> Face:
+        """Raises CncError 26171 or 26244 while there is no machine."""
+        if self.face is None:
+            number = GONE if self.why_none.number == GONE else NO_MACHINE_YET
+            raise CncError(number, self.why_none.reason, "nothing was sent")
+        return self.face
+
+
+def request_fields(request: HandshakeRequest) -> dict[str, Any]:
+    return {each.name: getattr(request, each.name) for each in fields(HandshakeRequest)}
