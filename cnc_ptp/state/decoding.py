@@ -96,7 +96,16 @@ class Decoder:
         return found
 
     def _values(self, values: list[Any]) -> list[Any]:
-        return [self._value(value) for value in values]
+        """Most are no list, or were made before: a call for each would take half of the time."""
+        found = self._found
+        return [
+            value
+            if type(value) is not list
+            else known
+            if (known := found[value[0]]) is not MISSING and known is not IN_THE_MAKING
+            else self._value(value)
+            for value in values
+        ]
 
     # what is made at once
 

@@ -38,6 +38,10 @@ HEADS: Final[dict[str, tuple[Any, ...]]] = {
     "T": (str, str, ROW),
 }
 """The parts of a row by its letter."""
+FORMS: Final = {
+    letter: (head[:-1], head[-1]) if head[-1] in (VALUES, PAIRS) else (head, None) for letter, head in HEADS.items()
+}
+"""The parts that each row has, and what follows."""
 PLAIN: Final = frozenset((type(None), bool, int, float, str))
 
 
@@ -65,14 +69,15 @@ def is_row(row: Any, count: int, lengths: list[int]) -> bool:
     """`count` of rows; `lengths`: numbers of attributes of the shapes."""
     if not isinstance(row, list) or not row or not isinstance(row[0], str) or row[0] not in HEADS:
         return False
-    head, parts = HEADS[row[0]], row[1:]
-    rest = head[-1] if head[-1] in (VALUES, PAIRS) else None
-    fixed = head[:-1] if rest else head
-    if len(parts) < len(fixed) or (rest is None and len(parts) > len(fixed)):
+    fixed, rest = FORMS[row[0]]
+    begin = 1 + len(fixed)
+    if len(row) < begin or (rest is None and len(row) > begin):
         return False
-    fits = all(is_part(part, kind, count) for part, kind in zip(parts, fixed, strict=False))
-    others = parts[len(fixed) :]
-    if not fits or not are_values(others, count) or (rest is PAIRS and len(others) % 2):
+    for part, kind in zip(row[1:begin], fixed, strict=True):
+        if not is_part(part, kind, count):
+            return False
+    others = row[begin:]
+    if not are_values(others, count) or (rest is PAIRS and len(others) % 2):
         return False
     if row[0] == "o":
         return 0 <= row[1] < len(lengths) and len(others) == lengths[row[1]]
