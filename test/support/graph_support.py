@@ -161,8 +161,8 @@ def nodes_of(parent):
             continue
         modules = [word.removeprefix("cnc_ptp.nodes.") for word in words if word.startswith("cnc_ptp.nodes.")]
         if ppid == parent and modules:
-            unit = words[words.index(f"cnc_ptp.nodes.{modules[0]}") + 2]
-            name = unit if modules[0] in ("axis", "spindle", "nc_channel") else modules[0]
+            has_unit = modules[0] in ("axis", "spindle", "nc_channel")
+            name = words[words.index(f"cnc_ptp.nodes.{modules[0]}") + 2] if has_unit else modules[0]
             found["plc" if name == "plc_bridge" else name] = int(entry.name)
     return found
 
