@@ -32,6 +32,7 @@ APART = {
     26194: "recording/test_on_demand.py",
     26195: "recording/test_on_demand.py",
     26196: "graph/test_recording_on_demand.py",
+    26220: "client/test_recorder.py",
 }
 """Tests that hold the number and its text apart from each other."""
 
