@@ -18,6 +18,7 @@ from cnc_ptp.commands.completion import (
     complete_word,
 )
 from cnc_ptp.commands.console import print_error
+from cnc_ptp.commands.run.web_options import web_options
 from cnc_ptp.errors import WRONG_INPUT, CncError
 from cnc_ptp.number_range import DURATION, PERCENT, POSITIVE, RATE, STATES_PER_SECOND
 from cnc_ptp.ros_arguments import client_namespace_option, namespace_option, ros_arguments
@@ -31,7 +32,7 @@ MACHINE = click.argument("machine", type=click.Path(dir_okay=False))
 RECORDING = click.argument("recording", type=click.Path())
 SCENARIO = click.option("--scenario", type=click.Path(dir_okay=False), help="Timed PLC commands (YAML).")
 PROGRAM = click.option("--program", type=click.Path(dir_okay=False), help="NC program for the first channel.")
-CLIENTS = ("status", "do", "jog", "watch")
+CLIENTS = ("status", "do", "jog", "watch", "web")
 MCAP_MAGIC = b"\x89MCAP"
 LIST_KINDS = ("axis", "channel", "tool", "zero", "clamp", "compensation", "startup")
 STARTS_NODES = ("run", "replay", *CLIENTS)
@@ -314,6 +315,19 @@ def watch_command(machine: str | None, **options: Any) -> None:
     from cnc_ptp.commands.client.status import watch
 
     sys.exit(watch(**options))
+
+
+@main.command("web")
+@web_options
+@client_namespace_option
+def web_command(**options: Any) -> None:
+    """Serve the pages of the running machine to browsers.
+
+    On this computer alone, at http://localhost:8080.
+    """
+    from cnc_ptp.commands.run.web import web
+
+    sys.exit(web(**options))
 
 
 @main.command("explain")

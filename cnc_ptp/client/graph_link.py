@@ -11,7 +11,7 @@ from concurrent.futures import CancelledError, Future
 from contextlib import AbstractContextManager, nullcontext, suppress
 from functools import partial
 from itertools import count
-from typing import Any
+from typing import Any, TypeVar
 
 from rclpy.qos import QoSProfile, QoSReliabilityPolicy
 from rclpy.serialization import deserialize_message
@@ -45,6 +45,7 @@ from cnc_ptp.recording.overwriting import check_recording
 from cnc_ptp.wire.block_codec import codec_of
 
 FROM_NOW_ON = QoSProfile(depth=1000, reliability=QoSReliabilityPolicy.RELIABLE)
+SomeLink = TypeVar("SomeLink", bound="GraphLink")
 LONGEST_TURN = 0.1
 """Seconds after which somebody who waits looks around, whatever has come."""
 
@@ -53,6 +54,9 @@ class GraphLink(Link):
     """Its thread takes what comes; whoever waits is woken by it."""
 
     clock = ""
+    node_name = ""
+    """Empty: one of its process."""
+    event_quality = FROM_NOW_ON
 
     def __init__(self, *, domain: int | None, namespace: str) -> None:
         """Raises CncError 26108."""
@@ -69,7 +73,7 @@ class GraphLink(Link):
         self._heard = time.monotonic()
         self._gone: CncError | None = None
         self._is_open = False
-        self._thread = ClientThread(domain=domain, namespace=namespace, after=self._after)
+        self._thread = ClientThread(domain=domain, namespace=namespace, after=self._after, name=self.node_name)
 
     def find(self, timeout: float) -> MachineClient:
         """The machine that runs. Raises CncError 26135."""
@@ -87,7 +91,7 @@ class GraphLink(Link):
         for unit, kind in self.kinds.items():
             take = chain(codec_of(BLOCK_CLASSES[kind]).decode, partial(self._take_block, unit))
             client.poll(BLOCK_TYPES[kind], block_topic(unit), take, BLOCKS)
-        client.poll(msg.Event, EVENT, self._take_event, FROM_NOW_ON)
+        client.poll(msg.Event, EVENT, self._take_event, self.event_quality)
         client.poll(msg.CommandRecord, COMMAND, self._take_record, FROM_NOW_ON)
 
     def wait_until_complete(self, timeout: float) -> None:
@@ -350,9 +354,15 @@ def start_graph(options: Mapping[str, Any], *, domain: int | None, namespace: st
     return link
 
 
-def connect_graph(*, domain: int | None, namespace: str, timeout: float) -> GraphLink:
+def connect_graph(
+    *,
+    domain: int | None,
+    namespace: str,
+    timeout: float,
+    kind: type[SomeLink] = GraphLink,  # type: ignore[assignment]
+) -> SomeLink:
     """The link to a graph that runs. Raises as Machine.connect."""
-    link = GraphLink(domain=domain, namespace=namespace)
+    link = kind(domain=domain, namespace=namespace)
     try:
         client = link.find(timeout)
         link.observe(client.kinds, client.cycle_time)

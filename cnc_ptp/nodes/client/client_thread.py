@@ -23,12 +23,17 @@ PERIOD = 0.005
 class ClientThread:
     """Does what it is asked to with its client, one after the other, and calls `after` many times per second."""
 
-    def __init__(self, *, domain: int | None, namespace: str, after: Callable[[MachineClient], None]) -> None:
-        """`domain`: None = ROS_DOMAIN_ID; `namespace` of the machine; `after` is called in the thread.
+    def __init__(
+        self, *, domain: int | None, namespace: str, after: Callable[[MachineClient], None], name: str = ""
+    ) -> None:
+        """`domain`: None = ROS_DOMAIN_ID; `namespace` of the machine; `name` of the node, "" = one of its process.
+
+        `after` is called in the thread.
 
         Raises CncError 26108 when ROS does not start.
         """
         self._after = after
+        self._name = name
         self._calls: deque[tuple[Callable[[MachineClient], Any], Future[Any]]] = deque()
         self._ends = False
         self.failure: Exception | None = None
@@ -56,7 +61,7 @@ class ClientThread:
     def _run(self, started: Future[MachineClient], words: Sequence[str], domain: int | None) -> None:
         try:
             process.initialise(self._context, words=words, domain=domain)
-            client = MachineClient(context=self._context)
+            client = MachineClient(context=self._context, name=self._name)
         except BaseException as error:  # for the thread that waits for it
             started.set_exception(error)
             rclpy.try_shutdown(context=self._context)

@@ -47,10 +47,10 @@ NUMBERS = count(1)
 class MachineClient(PollingNode):
     """Services used: /plc/get_parameters, /<axis>/get_parameters, /<unit>/<command>; all in its namespace."""
 
-    def __init__(self, *, context: Context | None = None) -> None:
-        """`context`: of ROS, None = the default one."""
-        name = f"cnc_ptp_client_{os.getpid()}_{next(NUMBERS)}" if context else f"cnc_ptp_client_{os.getpid()}"
-        super().__init__(name, context=context, enable_rosout=False, start_parameter_services=False)
+    def __init__(self, *, context: Context | None = None, name: str = "") -> None:
+        """`context`: of ROS, None = the default one. `name` of the node; without one it is made of the process."""
+        own = f"cnc_ptp_client_{os.getpid()}_{next(NUMBERS)}" if context else f"cnc_ptp_client_{os.getpid()}"
+        super().__init__(name or own, context=context, enable_rosout=False, start_parameter_services=False)
         self._executor_of_client = EventsExecutor(context=context)
         self._executor_of_client.add_node(self)
         self._askers: dict[tuple[str, str], Client[Any, Any]] = {}

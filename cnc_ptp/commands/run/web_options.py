@@ -1,0 +1,21 @@
+"""Options of the web face, apart from what it loads."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import click
+
+from cnc_ptp.web.serve import DEFAULT_PORT, HOST
+
+
+def web_options(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Options of `cnc_ptp web`."""
+    for option in (
+        click.option("--name", "names", multiple=True, help="A further name under which pages may be asked for."),
+        click.option("--host", default=HOST, show_default=True, help="Address to listen on."),
+        click.option("--port", type=click.IntRange(1, 65535), default=DEFAULT_PORT, show_default=True, help="Port."),
+    ):
+        function = option(function)
+    return function

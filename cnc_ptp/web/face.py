@@ -1,0 +1,66 @@
+"""What pages see of a machine, whether it runs or was recorded."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from cnc_ptp.client.link import Reply
+from cnc_ptp.protocol.blocks import CycleBlock, Event, HandshakeRequest
+
+State = Mapping[str, Mapping[str, Any]]
+"""Unit -> its fields, as protocol.py sends them."""
+
+
+@dataclass(slots=True)
+class News:
+    """What has come since the last look."""
+
+    events: Sequence[Event] = ()
+    requests: Sequence[HandshakeRequest] = ()
+    blocks: Sequence[tuple[str, CycleBlock]] = ()
+
+
+class Face(ABC):
+    """A machine as pages see it. All is called from the event loop, and returns at once, but for what is `async`."""
+
+    kinds: Mapping[str, str]
+    """Unit -> kind, in the order of the machine."""
+    cycle_time: float
+    """Seconds."""
+    is_recording = False
+
+    @abstractmethod
+    def machine(self) -> dict[str, Any]:
+        """Name, units and cycle times, as `hello` has them."""
+
+    @property
+    @abstractmethod
+    def time(self) -> float:
+        """Seconds of the machine."""
+
+    @abstractmethod
+    def state(self) -> State:
+        """Of all units, now."""
+
+    @abstractmethod
+    def news(self) -> News:
+        """What has come since the last call."""
+
+    @abstractmethod
+    async def ask(self, unit: str, command: str, arguments: Mapping[str, Any], *, user: str) -> Reply:
+        """Gives a command. Raises the refusal of the unit, and CncError 22001, 22002, 26111, 26136, 26171."""
+
+    @abstractmethod
+    def jog(self, axis: str, velocity: float, *, user: str) -> None:
+        """One message of a jog (mm/s, deg/s; 0 ends it); the axis stops 0.2 s after the last one."""
+
+    @abstractmethod
+    async def run(self) -> None:
+        """Keeps the face going until the machine is gone. Raises CncError 26171 then."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """The end; may take a while."""

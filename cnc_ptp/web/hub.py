@@ -1,0 +1,161 @@
+"""The machine and all pages that look at it: what has come goes to all of them."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from cnc_ptp.client.faults import GONE
+from cnc_ptp.errors import CncError
+from cnc_ptp.protocol.blocks import Event, HandshakeRequest
+from cnc_ptp.web.alarms import Alarms, event_fields
+from cnc_ptp.web.command_right import CommandRight
+from cnc_ptp.web.face import Face, State
+from cnc_ptp.web.numbers import NO_MACHINE_YET
+from cnc_ptp.web.protocol import VERSION, difference, error_fields
+from cnc_ptp.web.session import Session
+
+PERIOD = 0.05
+"""Seconds between two states."""
+AGAIN = 1.0
+"""Seconds until a machine that was not found is looked for again."""
+WAITING = CncError(NO_MACHINE_YET, "no machine runs", "the page is filled as soon as there is one")
+
+
+class Hub:
+    """Keeps the face of a machine, looks for it again when it is gone, and tells the sessions what has come."""
+
+    def __init__(self, connect: Callable[[], Face], *, name: str = "") -> None:
+        """`connect` may block; it raises CncError while there is no machine. `name`: what pages call the machine."""
+        self._connect = connect
+        self._name = name
+        self.face: Face | None = None
+        self.sessions: list[Session] = []
+        self.right = CommandRight()
+        self.alarms = Alarms()
+        self.handshakes: dict[int, dict[str, Any]] = {}
+        self._state: State = {}
+        self.why_none = WAITING
+        """Why there is no machine now."""
+        self._task: asyncio.Task[None] | None = None
+
+    # its life
+
+    def begin(self) -> None:
+        self._task = asyncio.create_task(self._live())
+
+    async def end(self) -> None:
+        """All sessions end; their jogs too."""
+        for session in [*self.sessions]:
+            await session.close()
+        if self._task is not None:
+            self._task.cancel()
+            with contextlib.suppress(asyncio.CancelledError):
+                await self._task
+        if self.face is not None:
+            await asyncio.to_thread(self.face.close)
+            self.face = None
+
+    async def _live(self) -> None:
+        while True:
+            try:
+                face = await asyncio.to_thread(self._connect)
+            except CncError as error:
+                self.why_none = error
+                await asyncio.sleep(AGAIN)
+                continue
+            await self._live_with(face)
+
+    async def _live_with(self, face: Face) -> None:
+        self.face, self._state, self.alarms = face, {}, Alarms()
+        self.handshakes.clear()
+        for session in self.sessions:
+            session.send({"type": "back"})
+            session.send(self.hello(session))
+        running = asyncio.create_task(face.run())
+        try:
+            while not running.done():
+                await asyncio.sleep(PERIOD)
+                self.tell(face)
+            running.result()
+        except CncError as error:
+            self._tell_gone(error)
+            await asyncio.to_thread(face.close)
+        finally:
+            running.cancel()
+
+    def _tell_gone(self, error: CncError) -> None:
+        self.face, self.why_none = None, error
+        self.to_all({"type": "gone", **error_fields(error)})
+
+    # what goes to pages
+
+    def hello(self, session: Session) -> dict[str, Any]:
+        """The first message to a page, and another one when a machine has come."""
+        shared = {"type": "hello", "version": VERSION, "user": session.user, "role": session.role}
+        if self.face is None:
+            return {**shared, "machine": None, "operator": self.right.shown(), "why": error_fields(self.why_none)}
+        session.is_behind = True
+        return {
+            **shared,
+            "machine": {"name": self._name, "recording": self.face.is_recording, **self.face.machine()},
+            "operator": self.right.shown(),
+            "alarms": self.alarms.list(),
+            "handshakes": [*self.handshakes.values()],
+        }
+
+    def tell(self, face: Face) -> None:
+        """What has come since the last time, to all pages."""
+        news = face.news()
+        for event in news.events:
+            self._tell_event(event, face.cycle_time)
+        for request in news.requests:
+            self._tell_request(request)
+        state = face.state()
+        changes = difference(state, self._state)
+        self._state = state
+        for session in self.sessions:
+            session.send_state(face.time, state, changes)
+            session.take_blocks(news.blocks)
+
+    def _tell_event(self, event: Event, cycle_time: float) -> None:
+        fields = event_fields(event, cycle_time)
+        alarm = self.alarms.take(fields)
+        self.to_all({"type": "event", **(alarm or fields)})
+
+    def _tell_request(self, request: HandshakeRequest) -> None:
+        if request.acknowledge_needed:
+            self.handshakes[request.id] = request_fields(request)
+            self.to_all({"type": "handshake", **request_fields(request)})
+
+    def to_all(self, message: Mapping[str, Any]) -> None:
+        for session in self.sessions:
+            session.send(message)
+
+    def tell_operator(self) -> None:
+        self.to_all({"type": "operator", **self.right.shown()})
+
+    # sessions
+
+    def add(self, session: Session) -> None:
+        self.sessions.append(session)
+        session.send(self.hello(session))
+
+    def remove(self, session: Session) -> None:
+        if session in self.sessions:
+            self.sessions.remove(session)
+        if self.right.leave(session):
+            self.tell_operator()
+
+    def require_face(self) -> Face:
+        """Raises CncError 26171 or 26244 while there is no machine."""
+        if self.face is None:
+            number = GONE if self.why_none.number == GONE else NO_MACHINE_YET
+            raise CncError(number, self.why_none.reason, "nothing was sent")
+        return self.face
+
+
+def request_fields(request: HandshakeRequest) -> dict[str, Any]:
+    return {name: getattr(request, name) for name in HandshakeRequest.__slots__}

@@ -1,0 +1,105 @@
+"""Jogs of a page: each of its messages is passed on once, none is repeated, and late ones do not count."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from cnc_ptp.client.faults import unknown_unit
+from cnc_ptp.errors import CncError
+from cnc_ptp.nodes.bridge.jog_topics import PATIENCE
+from cnc_ptp.web.numbers import JOG_ENDED
+from cnc_ptp.web.protocol import Message, error_fields, field
+from cnc_ptp.web.rights import require_role
+
+if TYPE_CHECKING:
+    from cnc_ptp.web.session import Session
+
+LATE = 0.15
+"""Seconds that a message may be late, measured against the quickest one of its page."""
+
+
+@dataclass(slots=True)
+class Press:
+    """A key that is held."""
+
+    sequence: int
+    heard: float
+
+
+class Jogs:
+    """The keys that are held on a page, by axis.
+
+    A jog begins with `sequence` 1. It ends with the first message that is missing for 0.2 s: what comes then belongs to
+    the past (a socket that has stalled delivers everything at once), so that a new one needs a new press of the key.
+    """
+
+    def __init__(self, session: Session, *, now: Callable[[], float] = time.monotonic) -> None:
+        self._session = session
+        self._now = now
+        self._held: dict[str, Press] = {}
+        self._quickest = float("inf")
+
+    def take(self, message: Message) -> None:
+        """`jog`: axis, velocity (mm/s, deg/s), sequence, time (ms, of the page's clock).
+
+        Raises CncError 26111, 26233, 26235, 26236; a jog that has ended is told once (26243).
+        """
+        axis, velocity = self._axis(message), field(message, "velocity", "number")
+        sequence, sent = field(message, "sequence", "integer"), field(message, "time", "number")
+        if velocity == 0.0:
+            self._stop(axis)
+            return
+        self._require_right(axis)
+        is_late = self._lateness(sent * 1e-3) > LATE
+        press = self._held.get(axis)
+        if sequence == 1 and not is_late:
+            self._held[axis] = Press(1, self._now())
+        elif press is None:
+            return
+        elif is_late or sequence <= press.sequence or self._now() - press.heard > PATIENCE:
+            self._break_off(axis)
+            return
+        else:
+            press.sequence, press.heard = sequence, self._now()
+        self._session.hub.require_face().jog(axis, velocity, user=self._session.user)
+
+    def take_stop(self, message: Message) -> None:
+        """`jog_stop`: of an axis."""
+        self._stop(self._axis(message))
+
+    def end(self) -> None:
+        """Of all axes, now."""
+        for axis in [*self._held]:
+            self._stop(axis)
+
+    def _axis(self, message: Message) -> str:
+        face = self._session.hub.require_face()
+        axis: str = field(message, "axis", "text")
+        if face.kinds.get(axis) != "axis":
+            raise unknown_unit(axis, [name for name, kind in face.kinds.items() if kind == "axis"], "axis")
+        return axis
+
+    def _require_right(self, axis: str) -> None:
+        what = f"axis {axis}: jog"
+        require_role(what, self._session.user, self._session.role, "operator")
+        self._session.hub.right.require(self._session, what)
+
+    def _lateness(self, sent: float) -> float:
+        """Seconds; `sent` by the page's clock, whose difference to ours is at most that of its quickest message."""
+        difference = self._now() - sent
+        self._quickest = min(self._quickest, difference)
+        return difference - self._quickest
+
+    def _break_off(self, axis: str) -> None:
+        self._stop(axis)
+        effect = "the axis stops; press the key again"
+        error = CncError(JOG_ENDED, f"axis {axis}: the messages of the jog came too late", effect)
+        self._session.send({"type": "jog_ended", "axis": axis, **error_fields(error)})
+
+    def _stop(self, axis: str) -> None:
+        face = self._session.hub.face
+        if self._held.pop(axis, None) is not None and face is not None:
+            face.jog(axis, 0.0, user=self._session.user)

@@ -1,0 +1,124 @@
+"""The machine of the graph as pages see it: node `web`."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Mapping
+from concurrent.futures import Future
+from functools import partial
+from math import inf
+from typing import Any
+
+from rclpy.publisher import Publisher
+
+from cnc_ptp import msg
+from cnc_ptp.client import Machine
+from cnc_ptp.client.graph_link import GraphLink, connect_graph
+from cnc_ptp.client.link import Reply
+from cnc_ptp.nodes.client.calls_in_flight import CallsInFlight
+from cnc_ptp.nodes.client.machine_client import MachineClient, services_of
+from cnc_ptp.nodes.topics import EVENTS, LATEST, PLC_INPUT, jog_topic, program_topic
+from cnc_ptp.protocol.blocks import read_values
+from cnc_ptp.web.machine_face import MachineFace
+
+NODE = "web"
+FREQUENT: Mapping[str, tuple[str, ...]] = {
+    "channel": ("load", "start", "feed_hold", "set_override", "reset", "mdi"),
+    "axis": ("halt", "stop", "reset", "move_absolute"),
+    "spindle": ("start", "stop"),
+    "plc": ("acknowledge",),
+}
+"""Commands whose services are looked for when the face begins: their first call is as quick as the others."""
+
+
+class WebLink(GraphLink):
+    """As of a client, but commands wait beside each other, and jogs are passed on message by message."""
+
+    node_name = NODE
+    event_quality = EVENTS  # with those that were before this process
+
+    def __init__(self, *, domain: int | None, namespace: str) -> None:
+        self.programs: dict[str, dict[str, Any]] = {}
+        self._calls = CallsInFlight()
+        self._jog_publishers: dict[str, Publisher[msg.Jog]] = {}
+        self._jog_number = 0
+        super().__init__(domain=domain, namespace=namespace)
+
+    def _subscribe(self, client: MachineClient) -> None:
+        super()._subscribe(client)
+        for unit, kind in self.kinds.items():
+            if kind == "channel":
+                client.create_subscription(msg.ProgramState, program_topic(unit), self._take_program, LATEST)
+            if kind == "axis":
+                self._jog_publishers[unit] = client.create_publisher(msg.Jog, jog_topic(unit), PLC_INPUT)
+            for command in FREQUENT[kind]:
+                if command in services_of(kind):
+                    self._calls.prepare(client, unit, command)
+
+    def _take_program(self, state: msg.ProgramState) -> None:
+        self.programs[state.channel] = {
+            "program": state.program,
+            "manual": state.manual,
+            "file": state.file,
+            "text": state.text,
+            "calls": [*state.calls],
+            "available": [*state.available],
+        }
+
+    def _after(self, client: MachineClient) -> None:
+        self._calls.go_on()
+        super()._after(client)
+
+    def call(self, unit: str, command: str, arguments: Mapping[str, Any]) -> Future[Any]:
+        """The response to a command, when it has come."""
+        answer: Future[Any] = Future()
+        self._thread.call(partial(self._begin_call, unit, command, arguments, answer))
+        return answer
+
+    def _begin_call(
+        self, unit: str, command: str, arguments: Mapping[str, Any], answer: Future[Any], client: MachineClient
+    ) -> None:
+        try:
+            self._calls.begin(client, unit, command, arguments, answer)
+        except Exception as error:  # for the page that has asked
+            answer.set_exception(error)
+
+    def jog(self, axis: str, velocity: float, client: str) -> None:
+        """One message, at once."""
+        self._jog_number += 1
+        message = msg.Jog(sequence=self._jog_number, valid=True, velocity=velocity)
+        message.header.frame_id = client
+        self._jog_publishers[axis].publish(message)
+
+    def require_machine(self) -> None:
+        """Raises CncError 26171 when it is gone."""
+        self._require_machine()
+
+
+class LiveFace(MachineFace):
+    """The machine that runs on this ROS domain."""
+
+    def __init__(self, machine: Machine, link: WebLink) -> None:
+        super().__init__(machine)
+        self._graph = link
+
+    def programs(self) -> Mapping[str, Mapping[str, Any]]:
+        return self._graph.programs
+
+    async def _answer_to(self, unit: str, command: str, arguments: Mapping[str, Any], user: str) -> Reply:
+        response = await asyncio.wrap_future(self._graph.call(unit, command, arguments))
+        number = 0 if response.accepted else response.error_id
+        return Reply(response.cycle, number, response.message, read_values(response.values_json), response.job)
+
+    def jog(self, axis: str, velocity: float, *, user: str) -> None:
+        self._graph.jog(axis, velocity, NODE if user == NODE else f"{NODE}:{user}")
+
+    async def run(self) -> None:
+        while True:
+            await self._graph.turn_async(inf)
+
+
+def live_face(*, domain: int | None = None, namespace: str = "", timeout: float = 5.0) -> LiveFace:
+    """Looks for the machine. Raises CncError 26108, 26135, 26176."""
+    link = connect_graph(domain=domain, namespace=namespace, timeout=timeout, kind=WebLink)
+    return LiveFace(Machine(link), link)

@@ -1,0 +1,60 @@
+"""Who is logged in: cookies of browsers, and how long they last."""
+
+from __future__ import annotations
+
+import secrets
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+IDLE_TIME = 30 * 60.0
+"""Seconds without anything from a browser after which its login ends …"""
+LONGEST_TIME = 12 * 3600.0
+"""… and after which it ends in any case."""
+MOST = 1000
+"""Logins that are remembered, the newest ones."""
+
+
+@dataclass(slots=True)
+class Login:
+    """A browser: its user, and the token that its pages prove themselves with."""
+
+    user: str
+    role: str
+    begin: float
+    used: float
+    token: str = field(default_factory=lambda: secrets.token_urlsafe(24))
+    """Against forged requests: pages of other origins cannot read it."""
+
+
+class Logins:
+    """By the value of their cookie, which nobody can guess."""
+
+    def __init__(self, *, now: Callable[[], float] = time.monotonic) -> None:
+        self._now = now
+        self._logins: dict[str, Login] = {}
+
+    def begin(self, user: str, role: str) -> str:
+        """A new login: the value of its cookie."""
+        key = secrets.token_urlsafe(32)
+        self._logins[key] = Login(user, role, self._now(), self._now())
+        while len(self._logins) > MOST:
+            del self._logins[next(iter(self._logins))]
+        return key
+
+    def find(self, key: str) -> Login | None:
+        """The login of a cookie, which counts as used; None for one that has ended or never was."""
+        login = self._logins.get(key)
+        if login is None:
+            return None
+        if self.has_ended(login):
+            del self._logins[key]
+            return None
+        login.used = self._now()
+        return login
+
+    def has_ended(self, login: Login) -> bool:
+        return self._now() - login.used > IDLE_TIME or self._now() - login.begin > LONGEST_TIME
+
+    def end(self, key: str) -> None:
+        self._logins.pop(key, None)

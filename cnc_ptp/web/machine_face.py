@@ -1,0 +1,158 @@
+"""A machine under the hands of a client as pages see it; and one without a graph, which runs in real time."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Mapping
+from math import inf
+from types import SimpleNamespace
+from typing import Any
+
+from cnc_ptp.channel.channel_unit import ChannelUnit
+from cnc_ptp.client import Machine
+from cnc_ptp.client.faults import error_of, unknown_unit
+from cnc_ptp.client.link import Link, Reply
+from cnc_ptp.client.offline_link import OfflineLink
+from cnc_ptp.nodes.bridge.jog_topics import JogTopics
+from cnc_ptp.protocol.blocks import Event, Severity
+from cnc_ptp.web.description import describe_commands, describe_units
+from cnc_ptp.web.face import Face, News, State
+from cnc_ptp.web.unit_fields import unit_states
+
+
+class MachineFace(Face):
+    """What the graph and an offline machine have in common: their link."""
+
+    def __init__(self, machine: Machine) -> None:
+        self._machine = machine
+        self._link: Link = machine._session.link
+        self.kinds = self._link.kinds
+        self.cycle_time = self._link.cycle_time
+        seen = self._link.seen
+        self._events = seen.events()
+        self._blocks = {unit: seen.blocks_of(unit) for unit in self.kinds}
+        self._turns = {unit: asyncio.Lock() for unit in self.kinds}
+        self._units = describe_units(self.kinds, self._link.parameters_of, self.cycle_time)
+
+    def machine(self) -> dict[str, Any]:
+        block = next(iter(self._link.seen.blocks.values()))
+        return {
+            "units": self._units,
+            "commands": describe_commands(),
+            "cycle_time": self.cycle_time,
+            "block_cycles": block.count,
+        }
+
+    @property
+    def time(self) -> float:
+        return self._machine.time
+
+    def state(self) -> State:
+        states = unit_states(self._link.seen.blocks)
+        for channel, fields in self.programs().items():
+            states[channel].update(fields)
+        return states
+
+    def programs(self) -> Mapping[str, Mapping[str, Any]]:
+        """Channel -> program, file and text of the active line."""
+        return {}
+
+    def news(self) -> News:
+        requests = [*self._link.seen.known_requests()] if "plc" in self._link.seen.blocks else []
+        blocks = [(unit, block) for unit, mailbox in self._blocks.items() for block in taken(mailbox.items)]
+        return News(taken(self._events.items), requests, blocks)
+
+    async def ask(self, unit: str, command: str, arguments: Mapping[str, Any], *, user: str) -> Reply:
+        if unit not in self.kinds:
+            raise unknown_unit(unit, self.kinds)
+        given = self._machine[unit]._prepared(command, dict(arguments))
+        async with self._turns[unit]:
+            reply = await self._answer_to(unit, command, given, user)
+        if reply.error_id:
+            raise error_of(reply.error_id, reply.message, reply.values)
+        return reply
+
+    async def _answer_to(self, unit: str, command: str, arguments: Mapping[str, Any], user: str) -> Reply:
+        ticket = self._link.give(unit, command, arguments)
+        while (reply := self._link.answer(ticket)) is None:
+            await self._link.turn_async(inf)
+        return reply
+
+    def close(self) -> None:
+        self._machine.close()
+
+
+def taken(items: Any) -> list[Any]:
+    """What is in a mailbox; it is empty then."""
+    found = []
+    while items:
+        found.append(items.popleft())
+    return found
+
+
+class OfflineFace(MachineFace):
+    """A machine without a graph: its time passes as `run` or a test lets it."""
+
+    def __init__(self, machine: Machine, *, stands: bool = False) -> None:
+        """`stands`: its time passes in `step` alone."""
+        super().__init__(machine)
+        link = self._link
+        assert isinstance(link, OfflineLink)
+        self._offline = link
+        self._stands = stands
+        self._jogs = JogTopics(self._warn)
+        self._sequence = 0
+        self.users: list[tuple[str, str, str]] = []
+        """User, unit and command, of all that were given."""
+
+    def programs(self) -> Mapping[str, Mapping[str, Any]]:
+        shown = {}
+        for name, unit in self._offline._units.items():
+            if isinstance(unit, ChannelUnit):
+                view = unit.program_view
+                shown[name] = {"program": view.program, "manual": view.manual, "file": view.file, "text": view.text}
+        return shown
+
+    async def _answer_to(self, unit: str, command: str, arguments: Mapping[str, Any], user: str) -> Reply:
+        self.users.append((user, unit, command))
+        ticket = self._offline.give(unit, command, arguments)
+        while (reply := self._offline.answer(ticket)) is None:
+            self.step()
+        return reply
+
+    def jog(self, axis: str, velocity: float, *, user: str) -> None:
+        self._sequence += 1
+        message: Any = SimpleNamespace(
+            header=SimpleNamespace(frame_id=user), sequence=self._sequence, valid=True, velocity=velocity
+        )
+        changed = self._jogs.heard(axis, message, self._offline.now, paced=True)
+        if changed is not None:
+            self._give_jog(axis, changed)
+
+    def _give_jog(self, axis: str, velocity: float) -> None:
+        reply = self._offline.answer(self._offline.give(axis, "jog", {"velocity": velocity}))
+        assert reply is not None
+
+    def _warn(self, number: int, text: str) -> None:
+        cycle = round(self._offline.now / self.cycle_time)
+        self._offline.seen.take_event(Event(cycle, "plc", Severity.WARNING, number, text))
+
+    def step(self) -> None:
+        """One block. Raises CncError 26171 when the run has ended."""
+        for axis in self._jogs.fallen_silent(self._offline.now):
+            self._give_jog(axis, 0.0)
+        self._offline.turn(0.0)
+
+    async def run(self) -> None:
+        loop = asyncio.get_running_loop()
+        begin, passed = loop.time(), self._offline.now
+        while True:
+            while not self._stands and self._offline.now - passed < loop.time() - begin:
+                self.step()
+                await asyncio.sleep(0)
+            await asyncio.sleep(0.005)
+
+
+def offline_face(machine: str, *, stands: bool = False) -> OfflineFace:
+    """A machine of a machine file. Raises ParameterError, CncError 26110."""
+    return OfflineFace(Machine.offline(machine), stands=stands)

@@ -1,0 +1,107 @@
+"""What each message of a page does."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable
+from typing import TYPE_CHECKING, Any
+
+from cnc_ptp.client.faults import unknown_unit
+from cnc_ptp.errors import CncError, nearest_name
+from cnc_ptp.web.jog import Jogs
+from cnc_ptp.web.numbers import BAD_MESSAGE
+from cnc_ptp.web.protocol import NOTHING, Message, answer, field
+from cnc_ptp.web.rights import is_stop, require_page_command, require_role, role_for
+
+if TYPE_CHECKING:
+    from cnc_ptp.web.session import Session
+
+Answering = Awaitable[Message]
+
+
+class PageMessages:
+    """Handles the messages of one page; what takes time is an awaitable of the answer."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._hub = session.hub
+        self._jogs = Jogs(session)
+        self._handlers: dict[str, Callable[[Message], Answering | None]] = {
+            "command": self._command,
+            "jog": self._jogs.take,
+            "jog_stop": self._jogs.take_stop,
+            "take_command": self._take_command,
+            "ask_command": self._ask_command,
+            "give_command": self._give_command,
+            "acknowledge": self._acknowledge,
+            "ping": self._ping,
+        }
+
+    def handle(self, message: Message) -> Answering | None:
+        """Raises CncError for a message that is refused."""
+        name = message["type"]
+        handler = self._handlers.get(name)
+        if handler is None:
+            reason = f"message of the unknown type '{name[:40]}'{nearest_name(name, self._handlers)}"
+            raise CncError(BAD_MESSAGE, reason, f"{NOTHING}. Known: {', '.join(self._handlers)}")
+        return handler(message)
+
+    def end(self) -> None:
+        """The page is gone: its jogs end now."""
+        self._jogs.end()
+
+    # commands
+
+    def _command(self, message: Message) -> Answering:
+        unit, command = field(message, "unit", "text"), field(message, "command", "text")
+        arguments = field(message, "arguments", "object", {})
+        self._require_command(unit, command, arguments)
+        return self._ask(message, unit, command, arguments)
+
+    def _require_command(self, unit: str, command: str, arguments: dict[str, Any]) -> None:
+        """Raises CncError 26111, 26235, 26236, 26249."""
+        face = self._hub.require_face()
+        kind = face.kinds.get(unit)
+        if kind is None:
+            raise unknown_unit(unit, face.kinds)
+        what = f"{kind} {unit}: {command}"
+        require_page_command(kind, unit, command, arguments)
+        require_role(what, self._session.user, self._session.role, role_for(kind, command))
+        if not is_stop(kind, command, arguments):
+            self._hub.right.require(self._session, what)
+
+    async def _ask(self, message: Message, unit: str, command: str, arguments: dict[str, Any]) -> Message:
+        reply = await self._hub.require_face().ask(unit, command, arguments, user=self._session.user)
+        return answer(message, cycle=reply.cycle, job=reply.job, warning=reply.message, values=dict(reply.values))
+
+    # the command right
+
+    def _take_command(self, message: Message) -> None:
+        require_role("take_command", self._session.user, self._session.role, "operator")
+        self._hub.right.take(self._session)
+        self._told(message)
+
+    def _ask_command(self, message: Message) -> None:
+        require_role("ask_command", self._session.user, self._session.role, "operator")
+        self._hub.right.ask(self._session)
+        self._told(message)
+
+    def _give_command(self, message: Message) -> None:
+        self._hub.right.give(self._session)
+        self._jogs.end()
+        self._told(message)
+
+    def _told(self, message: Message) -> None:
+        self._session.send(answer(message))
+        self._hub.tell_operator()
+
+    # alarms
+
+    def _acknowledge(self, message: Message) -> None:
+        require_role("acknowledge", self._session.user, self._session.role, "operator")
+        numbers = self._hub.alarms.acknowledge(field(message, "alarm", "integer", None), self._session.user)
+        self._session.send(answer(message))
+        self._hub.to_all({"type": "acknowledged", "alarms": numbers, "user": self._session.user})
+
+    def _ping(self, message: Message) -> None:
+        """For the page, to know how late the server's messages are."""
+        self._session.send(answer(message))

@@ -1,0 +1,88 @@
+"""The application: routes, static files, the socket of the pages."""
+
+from __future__ import annotations
+
+from itertools import count
+from pathlib import Path
+from typing import Any
+
+from aiohttp import WSCloseCode, WSMsgType, web
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.web.access import Access, Names, make_middleware
+from cnc_ptp.web.hub import Hub
+from cnc_ptp.web.logins import Login
+from cnc_ptp.web.numbers import BAD_MESSAGE, TOO_MANY_SESSIONS
+from cnc_ptp.web.protocol import LARGEST_MESSAGE, NOTHING, error_fields, field, frame, read_message
+from cnc_ptp.web.session import Session
+
+STATIC = Path(__file__).parent / "static"
+MOST_SESSIONS = 50
+FIRST_MESSAGE = 5.0
+"""Seconds within which a page says who it is."""
+SILENCE = 20.0
+"""Seconds without an answer to a ping of the socket after which a page is gone."""
+NUMBERS = count(1)
+"""Of pages."""
+
+
+class Server:
+    """Routes of one machine; `app` is what aiohttp runs."""
+
+    def __init__(self, hub: Hub, access: Access, names: Names) -> None:
+        self.hub, self.access = hub, access
+        self.app = web.Application(middlewares=[make_middleware(names)], client_max_size=LARGEST_MESSAGE)
+        self.app.on_startup.append(self._begin)
+        self.app.on_shutdown.append(self._end)
+        self.app.router.add_get("/", self._index)
+        self.app.router.add_get("/api/session", self._session)
+        self.app.router.add_get("/ws", self._socket)
+        self.app.router.add_static("/static", STATIC)
+
+    async def _begin(self, _app: web.Application) -> None:
+        self.hub.begin()
+
+    async def _end(self, _app: web.Application) -> None:
+        await self.hub.end()
+
+    async def _index(self, request: web.Request) -> web.StreamResponse:
+        response = web.FileResponse(STATIC / "index.html", headers={"Cache-Control": "no-cache"})
+        self.access.welcome(request, response)
+        return response
+
+    async def _session(self, request: web.Request) -> web.StreamResponse:
+        """Who the page is, and its token; 401 where a login is needed."""
+        login = self.access.login_of(request)
+        fields = {"user": login.user, "role": login.role, "token": login.token, "login": self.access.needs_login}
+        return web.json_response(fields, headers={"Cache-Control": "no-store"})
+
+    async def _socket(self, request: web.Request) -> web.StreamResponse:
+        login = self.access.login_of(request)
+        if len(self.hub.sessions) >= MOST_SESSIONS:
+            raise CncError(TOO_MANY_SESSIONS, f"{MOST_SESSIONS} pages are open", f"{NOTHING}; close one")
+        socket = web.WebSocketResponse(max_msg_size=LARGEST_MESSAGE, heartbeat=SILENCE, autoping=True)
+        await socket.prepare(request)
+        if await self._is_own_page(socket, login):
+            session = Session(self.hub, socket, user=login.user, role=login.role, number=next(NUMBERS))
+            self.hub.add(session)
+            await session.run()
+        return socket
+
+    async def _is_own_page(self, socket: web.WebSocketResponse, login: Login) -> bool:
+        """Its first message is `hello` with its token; others are told why they are not wanted."""
+        try:
+            first: Any = await socket.receive(FIRST_MESSAGE)
+            message = read_message(first.data if first.type is WSMsgType.TEXT else "")
+            if message["type"] != "hello":
+                raise CncError(BAD_MESSAGE, "the first message is not hello", NOTHING)
+            self.access.require_token(login, field(message, "token", "text"))
+        except TimeoutError:
+            error = CncError(BAD_MESSAGE, f"no hello within {FIRST_MESSAGE:g} s", NOTHING)
+        except CncError as refused:
+            error = refused
+        else:
+            return True
+        if not socket.closed:
+            await socket.send_str(frame({"type": "error", **error_fields(error)}))
+            await socket.close(code=WSCloseCode.POLICY_VIOLATION)
+        return False

@@ -1,0 +1,157 @@
+"""One page: its messages, its rights, what it gets."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any
+
+from aiohttp import WSCloseCode, WSMsgType, web
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.protocol.blocks import CycleBlock
+from cnc_ptp.web.face import State
+from cnc_ptp.web.numbers import TOO_MANY_MESSAGES
+from cnc_ptp.web.page_messages import PageMessages
+from cnc_ptp.web.protocol import Message, error_fields, frame, read_message, refusal
+from cnc_ptp.web.rate import Rate
+
+if TYPE_CHECKING:
+    from cnc_ptp.web.hub import Hub
+
+MOST_PER_SECOND = 200
+BURST = 400
+"""Messages of a page; jogs of several axes are 20 a second each."""
+MOST_WAITING = 400
+"""Frames that a page may be behind; more, and its states are left out until it follows again."""
+LONGEST_STALL = 10.0
+"""Seconds that a page may take nothing."""
+
+
+class Session:
+    """A page. Its messages are handled in their order, but for commands, which wait for their answers beside."""
+
+    def __init__(self, hub: Hub, socket: web.WebSocketResponse, *, user: str, role: str, number: int) -> None:
+        self.hub = hub
+        self.user, self.role, self.number = user, role, number
+        self.is_behind = True
+        """It gets the whole state next."""
+        self._socket = socket
+        self._outgoing: deque[str | bytes] = deque()
+        self._something = asyncio.Event()
+        self._rate = Rate(MOST_PER_SECOND, BURST)
+        self._messages = PageMessages(self)
+        self._tasks: set[asyncio.Task[None]] = set()
+
+    @property
+    def label(self) -> str:
+        """For people: user and page."""
+        return f"{self.user} (page {self.number})"
+
+    def shown(self) -> dict[str, Any]:
+        return {"user": self.user, "page": self.number}
+
+    # to the page
+
+    def send(self, message: Mapping[str, Any]) -> None:
+        self.send_frame(frame(message))
+
+    def send_frame(self, data: str | bytes) -> None:
+        """In the order of the calls."""
+        self._outgoing.append(data)
+        self._something.set()
+
+    @property
+    def is_stalled(self) -> bool:
+        """The page does not take what it gets."""
+        return len(self._outgoing) > MOST_WAITING
+
+    def send_state(self, time: float, state: State, changes: State) -> None:
+        """What has changed; the whole state for a page that has missed something."""
+        if self.is_stalled:
+            self.is_behind = True
+            return
+        shown = state if self.is_behind else changes
+        self.is_behind = False
+        self.send({"type": "state", "time": round(time, 3), "units": shown})
+
+    def take_blocks(self, blocks: Sequence[tuple[str, CycleBlock]]) -> None:
+        """New blocks, for its scope."""
+
+    # from the page
+
+    async def run(self) -> None:
+        """Until its socket closes."""
+        writer = asyncio.create_task(self._write())
+        try:
+            await self._read()
+        finally:
+            self._messages.end()
+            self.hub.remove(self)
+            for task in [writer, *self._tasks]:
+                task.cancel()
+
+    async def _read(self) -> None:
+        async for received in self._socket:
+            if not self._rate.permits():
+                await self._refuse_rate()
+                return
+            if received.type is WSMsgType.TEXT:
+                self._take(received.data)
+            else:
+                self._take("a binary message")
+
+    async def _refuse_rate(self) -> None:
+        error = CncError(TOO_MANY_MESSAGES, f"more than {MOST_PER_SECOND} messages a second", "the page is cut off")
+        with suppress(ConnectionError, asyncio.TimeoutError):
+            await asyncio.wait_for(self._socket.send_str(frame({"type": "error", **error_fields(error)})), 1.0)
+        await self.close(WSCloseCode.POLICY_VIOLATION, error.message)
+
+    def _take(self, text: str) -> None:
+        message: Message = {}
+        try:
+            message = read_message(text)
+            handled = self._messages.handle(message)
+        except CncError as error:
+            self._refuse(message, error)
+            return
+        if handled is not None:
+            task = asyncio.create_task(self._answer(message, handled))
+            self._tasks.add(task)
+            task.add_done_callback(self._tasks.discard)
+
+    async def _answer(self, message: Message, handled: Any) -> None:
+        try:
+            self.send(await handled)
+        except CncError as error:
+            self._refuse(message, error)
+
+    def _refuse(self, message: Message, error: CncError) -> None:
+        known = message.get("id") is not None
+        self.send(refusal(message, error) if known else {"type": "error", **error_fields(error)})
+
+    async def _write(self) -> None:
+        while True:
+            await self._something.wait()
+            self._something.clear()
+            while self._outgoing:
+                data = self._outgoing.popleft()
+                sending = self._socket.send_bytes(data) if isinstance(data, bytes) else self._socket.send_str(data)
+                try:
+                    await asyncio.wait_for(sending, LONGEST_STALL)
+                except (TimeoutError, ConnectionError, RuntimeError):
+                    await self.abort()
+                    return
+
+    # the end
+
+    async def close(self, code: int = WSCloseCode.GOING_AWAY, reason: str = "") -> None:
+        await self._socket.close(code=code, message=reason.encode()[:120])
+
+    async def abort(self) -> None:
+        """A page that takes nothing does not answer a farewell either."""
+        self._messages.end()
+        with suppress(ConnectionError, asyncio.TimeoutError):
+            await asyncio.wait_for(self.close(), 1.0)

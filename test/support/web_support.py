@@ -1,0 +1,101 @@
+"""A server of pages over an offline machine, and a page that talks to it."""
+
+import asyncio
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+from aiohttp.test_utils import TestClient, TestServer
+
+from cnc_ptp.web.access import Access, Names
+from cnc_ptp.web.hub import Hub
+from cnc_ptp.web.machine_face import offline_face
+from cnc_ptp.web.server import Server
+
+ROOT = Path(__file__).parents[2]
+MILL = str(ROOT / "config" / "mill.yaml")
+PATIENCE = 10.0
+
+
+class Page:
+    """The socket of a page; `waiting` has what has come and nobody has waited for yet."""
+
+    def __init__(self, socket):
+        self.socket = socket
+        self.waiting = []
+        self._ids = 0
+
+    async def send(self, **message):
+        await self.socket.send_json(message)
+
+    async def next(self):
+        message = await asyncio.wait_for(self.socket.receive(), PATIENCE)
+        assert message.type.name == "TEXT", message
+        return message.json()
+
+    async def wait_for(self, kind, condition=lambda message: True):
+        """The first message of a type that fulfils a condition and was not waited for before."""
+        for message in self.waiting:
+            if message["type"] == kind and condition(message):
+                self.waiting.remove(message)
+                return message
+        while True:
+            message = await self.next()
+            if message["type"] == kind and condition(message):
+                return message
+            self.waiting.append(message)
+
+    async def ask(self, type, **fields):
+        """The answer to a message."""
+        self._ids += 1
+        await self.send(type=type, id=self._ids, **fields)
+        return await self.wait_for("answer", lambda answer: answer["id"] == self._ids)
+
+    async def command(self, unit, command, **arguments):
+        return await self.ask("command", unit=unit, command=command, arguments=arguments)
+
+    async def state_of(self, unit, condition):
+        """Fields of a unit as soon as a condition of them is true."""
+        known = {}
+        while True:
+            message = await self.wait_for("state")
+            known |= message["units"].get(unit, {})
+            if known and condition(known):
+                return known
+
+
+class Site:
+    """The server, its hub, and a client with the cookie of a page."""
+
+    def __init__(self, hub, access, client):
+        self.hub, self.access, self.client = hub, access, client
+
+    async def token(self):
+        await self.client.get("/")
+        answer = await self.client.get("/api/session")
+        return (await answer.json())["token"]
+
+    async def page(self, *, commands=True):
+        """A page that has said hello; `commands`: it holds the command."""
+        token = await self.token()
+        page = Page(await self.client.ws_connect("/ws"))
+        await page.send(type="hello", token=token)
+        page.hello = await page.wait_for("hello")
+        if commands:
+            assert (await page.ask("take_command"))["ok"]
+        return page
+
+
+@asynccontextmanager
+async def site(machine=MILL, *, connect=None, needs_login=False):
+    """`connect` gives the face; the one of an offline machine without it."""
+    hub = Hub(connect or (lambda: offline_face(machine)), name="mill")
+    access = Access(needs_login=needs_login)
+    server = Server(hub, access, Names())
+    client = TestClient(TestServer(server.app))
+    await client.start_server()
+    try:
+        while connect is None and hub.face is None:
+            await asyncio.sleep(0.01)
+        yield Site(hub, access, client)
+    finally:
+        await client.close()
