@@ -19,7 +19,7 @@ export function positions(app) {
   const kind = toggle("Set", () => ((actual = !actual), show()), { "aria-label": "Actual positions" });
   const rows = store.of("axis").map((axis) => row(axis));
   const body = h("tbody", {}, rows.map((one) => one.element));
-  const head = h("thead", {}, h("tr", {}, ["Axis", "Position", "Set", "Actual", "To go"].map((name) => h("th", { scope: "col" }, name))));
+  const head = h("thead", {}, h("tr", {}, ["Axis", "Position", "To go", "Set", "Actual"].map((name) => h("th", { scope: "col" }, name))));
   const element = panel("Position", h("div", { class: "row" }, coordinates, kind), h("div", { class: "scroll" }, h("table", { class: "positions" }, head, body)));
 
   function update() {
@@ -32,7 +32,7 @@ export function positions(app) {
 
 function row(axis) {
   const [big, set, actual, rest, name] = [h("td", { class: "big number" }), h("td", { class: "number" }), h("td", { class: "number" }), h("td", { class: "number" }), h("th", { scope: "row" }, axis.name.toUpperCase(), h("small", {}, ` ${unitSign(axis.unit)}`))];
-  const element = h("tr", { dataset: { axis: axis.name } }, name, big, set, actual, rest);
+  const element = h("tr", { dataset: { axis: axis.name } }, name, big, rest, set, actual);
   return {
     name: axis.name,
     element,
