@@ -4,6 +4,9 @@ import {
   LineSegments, Mesh, MeshLambertMaterial, OrthographicCamera, OrbitControls, Scene, Vector3, WebGLRenderer,
 } from "../vendor/three.js";
 
+import { Pace } from "./pace.js";
+import { coarser } from "./toolpath.js";
+
 const VIEWS = { iso: [1, -1.2, 0.9], top: [0, 0, 1], front: [0, -1, 0], side: [1, 0, 0], turning: [0, -1, 0] };
 const UP = { top: [0, 1, 0], turning: [1, 0, 0] };
 const MARGIN = 1.25;
@@ -18,7 +21,8 @@ export class PathScene {
     this._scene = new Scene();
     this._camera = new OrthographicCamera(-1, 1, 1, -1, -1e5, 1e5);
     this._controls = new OrbitControls(this._camera, canvas);
-    this._controls.addEventListener("change", () => this.draw());
+    this._pace = new Pace((step, ratio) => this._setStep(step, ratio));
+    this._controls.addEventListener("change", () => this.turned());
     this._scene.add(new AmbientLight(0xffffff, 1.6), sun());
     this._path = new Group();
     this._box = { min: [-50, -50, 0], max: [50, 50, 0] };
@@ -47,8 +51,10 @@ export class PathScene {
     const shape = new BufferGeometry();
     shape.setAttribute("position", new BufferAttribute(positions, 3));
     shape.setAttribute("color", new BufferAttribute(colours, 3, true));
-    shape.setIndex(new BufferAttribute(pairs, 1));
+    this._levels = new Map([[1, new BufferAttribute(pairs, 1)]]);
+    shape.setIndex(this._levels.get(1));
     this._shape = shape;
+    this._shown = pairs.length / 2;
     const lines = new LineSegments(shape, new LineBasicMaterial({ vertexColors: true }));
     lines.frustumCulled = false;
     this._path.add(lines);
@@ -63,8 +69,30 @@ export class PathScene {
 
   /** Draws the path only up to so many pairs. */
   setShown(pairs) {
-    this._shape?.setDrawRange(0, pairs * 2);
+    if (pairs === this._shown) return;
+    this._shown = pairs;
+    this._setRange(1);
     this.draw();
+  }
+
+  /** While it is turned, only so many points are joined that it follows; then all of them again. */
+  turned() {
+    this._pace.turned();
+    this.draw();
+  }
+
+  _setStep(step, ratio) {
+    this._renderer.setPixelRatio(ratio * Math.min(window.devicePixelRatio, 2));
+    if (!this._shape) return;
+    if (!this._levels.has(step)) this._levels.set(step, new BufferAttribute(coarser(this._levels.get(1).array, step), 1));
+    this._shape.setIndex(this._levels.get(step));
+    this._setRange(step);
+    this.draw();
+  }
+
+  _setRange(step) {
+    const [all, level] = [this._levels.get(1).count / 2, this._levels.get(step).count];
+    this._shape.setDrawRange(0, 2 * Math.round((level / 2) * (this._shown / Math.max(1, all))));
   }
 
   setTool(x, y, z) {
@@ -149,9 +177,11 @@ export class PathScene {
     this._asked = 0;
     this.frames += 1;
     this._renderer.render(this._scene, this._camera);
+    this._pace.drawn();
   }
 
   end() {
+    this._pace.end();
     this._observer.disconnect();
     cancelAnimationFrame(this._asked);
     this._asked = -1;

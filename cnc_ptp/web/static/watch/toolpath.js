@@ -36,6 +36,21 @@ export function geometry({ count, rows }) {
   return { positions, pairs: pairs.subarray(0, used), box };
 }
 
+/** Pairs that join only each `step`-th point of what is joined, with both ends: coarser, and as long. */
+export function coarser(pairs, step) {
+  const found = [];
+  let from = pairs[0];
+  for (let i = 0, since = 1; i < pairs.length; i += 2, since++) {
+    const to = pairs[i + 1];
+    const isEnd = i + 2 >= pairs.length || pairs[i + 2] !== to;
+    if (since < step && !isEnd) continue;
+    found.push(from, to);
+    from = pairs[i + 2];
+    since = 0;
+  }
+  return new Uint32Array(found);
+}
+
 const RAPID = [0.55, 0.6, 0.66];
 // from slow to fast; bright enough on light and dark
 const SCALE = [[0.12, 0.35, 0.75], [0.0, 0.55, 0.5], [0.75, 0.5, 0.0], [0.8, 0.15, 0.1]];
