@@ -63,6 +63,7 @@ class Observations:
         self._written: dict[str, dict[str, ParameterValue]] = {unit: {} for unit in names}
         self._block_readers: dict[str, WeakSet[Mailbox[CycleBlock]]] = {unit: WeakSet() for unit in names}
         self._event_readers: WeakSet[Mailbox[Event]] = WeakSet()
+        self._record_readers: WeakSet[Mailbox[CommandRecord]] = WeakSet()
 
     # what comes
 
@@ -95,6 +96,8 @@ class Observations:
 
     def take_record(self, record: CommandRecord) -> None:
         """A command that was carried out or refused, whoever has given it."""
+        for reader in [*self._record_readers]:
+            reader.items.append(record)
         if record.command == WRITE_PARAMETER and record.accepted and record.target in self._written:
             arguments = json.loads(record.arguments_json)
             written = self._written[record.target]
@@ -161,4 +164,10 @@ class Observations:
         """The events that come from now on, as long as the mailbox is kept."""
         mailbox: Mailbox[Event] = Mailbox(EVENTS_KEPT)
         self._event_readers.add(mailbox)
+        return mailbox
+
+    def records(self) -> Mailbox[CommandRecord]:
+        """The commands that are carried out or refused from now on, as long as the mailbox is kept."""
+        mailbox: Mailbox[CommandRecord] = Mailbox(EVENTS_KEPT)
+        self._record_readers.add(mailbox)
         return mailbox

@@ -1,110 +1,104 @@
-"""Which requests are answered: their host, their origin, who they are from."""
+"""Who requests are from, and what they may do."""
 
 from __future__ import annotations
 
+import asyncio
 import secrets
-from collections.abc import Awaitable, Callable, Collection
-from dataclasses import dataclass
-from urllib.parse import urlsplit
+from math import inf
 
 from aiohttp import hdrs, web
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.web.logins import Login, Logins
-from cnc_ptp.web.numbers import NOT_LOGGED_IN, WRONG_ORIGIN
-from cnc_ptp.web.protocol import NOTHING, error_fields
+from cnc_ptp.web.numbers import NOT_LOGGED_IN, TOO_MANY_LOGINS
+from cnc_ptp.web.protocol import NOTHING
+from cnc_ptp.web.rate import Rate
+from cnc_ptp.web.users import Users
 
 COOKIE = "cnc_ptp"
 TOKEN_HEADER = "X-Token"
+BEARER = "Bearer "
 LOCAL_USER = "web"
 """Of a page of this computer without a login."""
-LOCAL_NAMES = ("localhost", "127.0.0.1", "::1")
-HEADERS = {
-    "Content-Security-Policy": "default-src 'self'; img-src 'self' data: blob:; object-src 'none'; base-uri 'none'; "
-    "form-action 'self'; frame-ancestors 'none'",
-    "X-Content-Type-Options": "nosniff",
-    "X-Frame-Options": "DENY",
-    "Referrer-Policy": "no-referrer",
-    "Cross-Origin-Opener-Policy": "same-origin",
-    "Cross-Origin-Resource-Policy": "same-origin",
-}
-Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
-
-
-@dataclass(frozen=True, slots=True)
-class Names:
-    """The names under which the server may be asked, whatever their port."""
-
-    names: Collection[str] = LOCAL_NAMES
-
-    def require_host(self, request: web.Request) -> None:
-        """Raises CncError 26237: another name may have been bent to this computer (DNS rebinding)."""
-        host = urlsplit(f"//{request.headers.get(hdrs.HOST, '')}").hostname or ""
-        if host.lower() not in self.names:
-            raise CncError(WRONG_ORIGIN, f"host '{host[:60]}' is none of {', '.join(self.names)}", NOTHING)
-
-    @staticmethod
-    def require_origin(request: web.Request) -> None:
-        """Raises CncError 26237 for a request that a page of another origin has made."""
-        origin = request.headers.get(hdrs.ORIGIN)
-        own = f"{request.scheme}://{request.headers.get(hdrs.HOST, '')}"
-        if origin is not None and origin != own:
-            raise CncError(WRONG_ORIGIN, f"origin '{origin[:60]}' is not {own}", NOTHING)
-
-
-def make_middleware(names: Names) -> Callable[[web.Request, Handler], Awaitable[web.StreamResponse]]:
-    """Checks every request; refusals become JSON with their number."""
-
-    @web.middleware
-    async def guard(request: web.Request, handler: Handler) -> web.StreamResponse:
-        try:
-            names.require_host(request)
-            names.require_origin(request)
-            response = await handler(request)
-        except CncError as error:
-            response = refuse(error)
-        except web.HTTPException as error:
-            error.headers.update(HEADERS)
-            raise
-        if not response.prepared:
-            response.headers.update(HEADERS)
-        return response
-
-    return guard
-
-
-STATUS = {WRONG_ORIGIN: 403, NOT_LOGGED_IN: 401}
-
-
-def refuse(error: CncError, status: int = 0) -> web.Response:
-    return web.json_response(error_fields(error), status=status or STATUS.get(error.number, 400))
+LOGINS_PER_SECOND, LOGIN_BURST = 0.2, 5
+"""Attempts for one name, and for all together ten times as many."""
+MOST_NAMES = 1000
+"""Whose attempts are counted."""
 
 
 class Access:
     """Finds out who a request is from."""
 
-    def __init__(self, *, needs_login: bool) -> None:
-        """Without a login every page of this computer is a commissioner."""
-        self.needs_login = needs_login
-        self.logins = Logins()
+    def __init__(self, users: Users | None = None) -> None:
+        """Without users there is no login: every page of this computer is a commissioner."""
+        self._users = users
+        self.logins = Logins(idle_time=inf) if users is None else Logins()
+        self._attempts: dict[str, Rate] = {}
+        self._all_attempts = Rate(10 * LOGINS_PER_SECOND, 10 * LOGIN_BURST)
+        self._one_at_a_time = asyncio.Semaphore(1)
+
+    @property
+    def needs_login(self) -> bool:
+        return self._users is not None
 
     def login_of(self, request: web.Request) -> Login:
-        """Raises CncError 26238."""
+        """By cookie, or by the token of a machine. Raises CncError 26238."""
+        header = request.headers.get(hdrs.AUTHORIZATION, "")
+        if self._users is not None and header.startswith(BEARER):
+            return self._of_token(self._users, header.removeprefix(BEARER).strip())
         login = self.logins.find(request.cookies.get(COOKIE, ""))
-        if login is None:
+        if login is None or not self.is_valid(login):
             raise CncError(NOT_LOGGED_IN, "there is no login, or it has ended", f"{NOTHING}; log in")
         return login
 
+    def _of_token(self, users: Users, token: str) -> Login:
+        user = users.of_token(token)
+        if user is None:
+            raise CncError(NOT_LOGGED_IN, "the token is not known", NOTHING)
+        login = self.logins.of_machine(user.name, user.role)
+        login.token = token
+        return login
+
+    def is_valid(self, login: Login) -> bool:
+        """It has not ended, and its user still has its role."""
+        if self._users is None or login.is_machine:
+            return not self.logins.has_ended(login)
+        return not self.logins.has_ended(login) and self._users.role_of(login.user) == login.role
+
     def require_page(self, request: web.Request) -> Login:
-        """The login of a request that changes something; it has the token of a page. Raises CncError 26238."""
+        """The login of a request that changes something: with the token of a page. Raises CncError 26238."""
         login = self.login_of(request)
-        self.require_token(login, request.headers.get(TOKEN_HEADER, ""))
+        if not login.is_machine:
+            self.require_token(login, request.headers.get(TOKEN_HEADER, ""))
         return login
 
     @staticmethod
     def require_token(login: Login, token: str) -> None:
+        """Raises CncError 26238."""
         if not secrets.compare_digest(token.encode(), login.token.encode()):
             raise CncError(NOT_LOGGED_IN, "the token of the page is wrong", f"{NOTHING}; load the page again")
+
+    async def log_in(self, name: str, password: str) -> str:
+        """The value of a cookie. Raises CncError 26238, and 26255 for too many attempts."""
+        if self._users is None:
+            raise CncError(NOT_LOGGED_IN, "this server has no users", f"{NOTHING}; load the page again")
+        self._require_attempt(name)
+        async with self._one_at_a_time:  # a check takes memory and time
+            user = await asyncio.to_thread(self._users.check, name, password)
+        if user is None:
+            raise CncError(NOT_LOGGED_IN, "name or password is wrong", NOTHING)
+        self._attempts.pop(name, None)
+        return self.logins.begin(user.name, user.role)
+
+    def _require_attempt(self, name: str) -> None:
+        while len(self._attempts) >= MOST_NAMES:
+            del self._attempts[next(iter(self._attempts))]
+        rate = self._attempts.setdefault(name, Rate(LOGINS_PER_SECOND, LOGIN_BURST))
+        if not rate.permits() or not self._all_attempts.permits():
+            raise CncError(TOO_MANY_LOGINS, "too many attempts to log in", f"{NOTHING}; wait a minute")
+
+    def log_out(self, request: web.Request) -> None:
+        self.logins.end(request.cookies.get(COOKIE, ""))
 
     def welcome(self, request: web.Request, response: web.StreamResponse) -> None:
         """A page of this computer is logged in by looking at it, where no login is needed."""

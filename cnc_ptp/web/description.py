@@ -2,24 +2,50 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from math import isfinite
+from pathlib import Path
 from typing import Any
 
 from cnc_ptp.parameters import ParameterSet
-from cnc_ptp.parameters.view.axis_view import axis_view
+from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
+from cnc_ptp.parameters.view.axis_view import axis_view, is_facing
+from cnc_ptp.parameters.view.channel_view import channel_view
+from cnc_ptp.parameters.view.spindle_view import spindle_view
 from cnc_ptp.protocol.commands import COMMANDS, INTERNAL, OF_CHANNELS, OF_PLC, Argument
 from cnc_ptp.web.rights import NOT_FROM_PAGE_ARGUMENTS, refused_from_pages
 
 
 def describe_units(
-    kinds: Mapping[str, str], parameters_of: Callable[[str], ParameterSet], cycle_time: float
+    kinds: Mapping[str, str], sets: Mapping[str, ParameterSet], cycle_time: float
 ) -> list[dict[str, Any]]:
-    """`cycle_time` in s. Limits in mm, mm/s … or deg, deg/s …; of spindles none."""
-    return [
-        {"name": unit, "kind": kind, **(axis_limits(parameters_of(unit), cycle_time) if kind == "axis" else {})}
-        for unit, kind in kinds.items()
-    ]
+    """`sets`: parameters by unit; `cycle_time` in s. Limits in mm, mm/s … or deg, deg/s …; of spindles in rpm."""
+    described = {"axis": axis_limits, "spindle": spindle_limits}
+    units = []
+    for unit, kind in kinds.items():
+        fields = described[kind](sets[unit], cycle_time) if kind in described else {}
+        if kind == "channel":
+            fields = channel_members(sets[unit], sets)
+        units.append({"name": unit, "kind": kind, **fields})
+    return units
+
+
+def channel_members(channel: ParameterSet, sets: Mapping[str, ParameterSet]) -> dict[str, Any]:
+    """Axes by unit and by their names in programs, spindles; whether it turns."""
+    view = channel_view(channel, sets, Path())
+    facing = [unit for unit in (axis.node for axis in view.axes) if unit in sets and is_facing(sets[unit])]
+    return {
+        "axes": [{"unit": axis.node, "name": axis.name} for axis in view.axes],
+        "spindles": [spindle.node for spindle in view.spindles if spindle.node],
+        "turning": bool(facing),
+        "limits": {"override": view.max_override_percent},
+    }
+
+
+def spindle_limits(parameters: ParameterSet, cycle_time: float) -> dict[str, Any]:
+    spindle = spindle_view(parameters, cycle_time)
+    speed = max(gear.max_speed for gear in spindle.gears.values()) / DEG_S_PER_RPM
+    return {"limits": {"speed": speed, "gears": [*spindle.gears]}}
 
 
 def axis_limits(parameters: ParameterSet, cycle_time: float) -> dict[str, Any]:

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from cnc_ptp.client.link import Reply
-from cnc_ptp.protocol.blocks import CycleBlock, Event, HandshakeRequest
+from cnc_ptp.parameters import ParameterSet
+from cnc_ptp.protocol.blocks import CommandRecord, CycleBlock, Event, HandshakeRequest
 
 State = Mapping[str, Mapping[str, Any]]
 """Unit -> its fields, as protocol.py sends them."""
@@ -21,6 +22,9 @@ class News:
     events: Sequence[Event] = ()
     requests: Sequence[HandshakeRequest] = ()
     blocks: Sequence[tuple[str, CycleBlock]] = ()
+    records: Sequence[CommandRecord] = ()
+    diagnostics: Sequence[dict[str, Any]] = ()
+    """Of nodes, newly told."""
 
 
 class Face(ABC):
@@ -30,6 +34,8 @@ class Face(ABC):
     """Unit -> kind, in the order of the machine."""
     cycle_time: float
     """Seconds."""
+    sets: Mapping[str, ParameterSet]
+    """Parameters of the units, without the plc."""
     is_recording = False
 
     @abstractmethod

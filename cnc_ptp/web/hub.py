@@ -4,21 +4,26 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import json
 from collections.abc import Callable, Mapping
+from dataclasses import asdict
 from typing import Any
 
 from cnc_ptp.client.faults import GONE
 from cnc_ptp.errors import CncError
-from cnc_ptp.protocol.blocks import Event, HandshakeRequest
+from cnc_ptp.protocol.blocks import ChannelBlock, CommandRecord, Event, HandshakeRequest
 from cnc_ptp.web.alarms import Alarms, event_fields
 from cnc_ptp.web.command_right import CommandRight
+from cnc_ptp.web.drawing_office import DrawingOffice
 from cnc_ptp.web.face import Face, State
 from cnc_ptp.web.numbers import NO_MACHINE_YET
+from cnc_ptp.web.program_watch import ProgramWatch
+from cnc_ptp.web.programs import ProgramFolder
 from cnc_ptp.web.protocol import VERSION, difference, error_fields
 from cnc_ptp.web.session import Session
 
-PERIOD = 0.05
-"""Seconds between two states."""
+PERIOD = 0.04
+"""Seconds between two states: 25 a second, so that it is more than 20 on a busy computer too."""
 AGAIN = 1.0
 """Seconds until a machine that was not found is looked for again."""
 WAITING = CncError(NO_MACHINE_YET, "no machine runs", "the page is filled as soon as there is one")
@@ -27,15 +32,20 @@ WAITING = CncError(NO_MACHINE_YET, "no machine runs", "the page is filled as soo
 class Hub:
     """Keeps the face of a machine, looks for it again when it is gone, and tells the sessions what has come."""
 
-    def __init__(self, connect: Callable[[], Face], *, name: str = "") -> None:
+    def __init__(self, connect: Callable[[], Face], *, folder: ProgramFolder, name: str = "") -> None:
         """`connect` may block; it raises CncError while there is no machine. `name`: what pages call the machine."""
         self._connect = connect
         self._name = name
+        self.folder = folder
+        self.programs = ProgramWatch(folder)
+        self.office = DrawingOffice()
         self.face: Face | None = None
         self.sessions: list[Session] = []
         self.right = CommandRight()
         self.alarms = Alarms()
         self.handshakes: dict[int, dict[str, Any]] = {}
+        self.offsets: dict[str, dict[str, Any]] = {}
+        """Channel -> what lies between programmed and machine positions."""
         self._state: State = {}
         self.why_none = WAITING
         """Why there is no machine now."""
@@ -54,6 +64,7 @@ class Hub:
             self._task.cancel()
             with contextlib.suppress(asyncio.CancelledError):
                 await self._task
+        self.office.close()
         if self.face is not None:
             await asyncio.to_thread(self.face.close)
             self.face = None
@@ -71,6 +82,7 @@ class Hub:
     async def _live_with(self, face: Face) -> None:
         self.face, self._state, self.alarms = face, {}, Alarms()
         self.handshakes.clear()
+        self.programs.forget()
         for session in self.sessions:
             session.send({"type": "back"})
             session.send(self.hello(session))
@@ -95,6 +107,7 @@ class Hub:
     def hello(self, session: Session) -> dict[str, Any]:
         """The first message to a page, and another one when a machine has come."""
         shared = {"type": "hello", "version": VERSION, "user": session.user, "role": session.role}
+        shared["page"] = session.number
         if self.face is None:
             return {**shared, "machine": None, "operator": self.right.shown(), "why": error_fields(self.why_none)}
         session.is_behind = True
@@ -104,6 +117,8 @@ class Hub:
             "operator": self.right.shown(),
             "alarms": self.alarms.list(),
             "handshakes": [*self.handshakes.values()],
+            "programs": self.programs.all(),
+            "offsets": self.offsets,
         }
 
     def tell(self, face: Face) -> None:
@@ -113,10 +128,20 @@ class Hub:
             self._tell_event(event, face.cycle_time)
         for request in news.requests:
             self._tell_request(request)
+        for record in news.records:
+            self._tell_answered(record)
+        for unit, block in news.blocks:
+            if isinstance(block, ChannelBlock):
+                self._tell_offsets(unit, block)
+        if news.diagnostics:
+            self.to_all({"type": "diagnostics", "nodes": [*news.diagnostics]})
         state = face.state()
         changes = difference(state, self._state)
         self._state = state
-        for session in self.sessions:
+        for program in self.programs.changes(changes):
+            self.to_all({"type": "program", **program})
+        for session in [*self.sessions]:
+            session.end_without_login()
             session.send_state(face.time, state, changes)
             session.take_blocks(news.blocks)
 
@@ -129,6 +154,18 @@ class Hub:
         if request.acknowledge_needed:
             self.handshakes[request.id] = request_fields(request)
             self.to_all({"type": "handshake", **request_fields(request)})
+
+    def _tell_answered(self, record: CommandRecord) -> None:
+        """A request that was acknowledged, by whomever."""
+        if record.command == "acknowledge" and record.accepted:
+            number = json.loads(record.arguments_json).get("id")
+            if self.handshakes.pop(number, None) is not None:
+                self.to_all({"type": "handshake_done", "id": number})
+
+    def _tell_offsets(self, channel: str, block: ChannelBlock) -> None:
+        for offsets in block.offsets:
+            self.offsets[channel] = {"channel": channel, **asdict(offsets)}
+            self.to_all({"type": "offsets", **self.offsets[channel]})
 
     def to_all(self, message: Mapping[str, Any]) -> None:
         for session in self.sessions:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import asyncio
+from collections import deque
 from collections.abc import Mapping
 from concurrent.futures import Future
 from functools import partial
 from math import inf
 from typing import Any
 
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rclpy.publisher import Publisher
 
 from cnc_ptp import msg
@@ -17,11 +19,13 @@ from cnc_ptp.client.graph_link import GraphLink, connect_graph
 from cnc_ptp.client.link import Reply
 from cnc_ptp.nodes.client.calls_in_flight import CallsInFlight
 from cnc_ptp.nodes.client.machine_client import MachineClient, services_of
-from cnc_ptp.nodes.topics import EVENTS, LATEST, PLC_INPUT, jog_topic, program_topic
+from cnc_ptp.nodes.topics import DIAGNOSTICS, EVENTS, LATEST, PLC_INPUT, jog_topic, program_topic
 from cnc_ptp.protocol.blocks import read_values
-from cnc_ptp.web.machine_face import MachineFace
+from cnc_ptp.web.face import News
+from cnc_ptp.web.machine_face import MachineFace, taken
 
 NODE = "web"
+MOST_DIAGNOSTICS = 100
 FREQUENT: Mapping[str, tuple[str, ...]] = {
     "channel": ("load", "start", "feed_hold", "set_override", "reset", "mdi"),
     "axis": ("halt", "stop", "reset", "move_absolute"),
@@ -39,6 +43,7 @@ class WebLink(GraphLink):
 
     def __init__(self, *, domain: int | None, namespace: str) -> None:
         self.programs: dict[str, dict[str, Any]] = {}
+        self.diagnostics: deque[dict[str, Any]] = deque(maxlen=MOST_DIAGNOSTICS)
         self._calls = CallsInFlight()
         self._jog_publishers: dict[str, Publisher[msg.Jog]] = {}
         self._jog_number = 0
@@ -46,6 +51,7 @@ class WebLink(GraphLink):
 
     def _subscribe(self, client: MachineClient) -> None:
         super()._subscribe(client)
+        client.create_subscription(DiagnosticArray, DIAGNOSTICS, self._take_diagnostics, PLC_INPUT)
         for unit, kind in self.kinds.items():
             if kind == "channel":
                 client.create_subscription(msg.ProgramState, program_topic(unit), self._take_program, LATEST)
@@ -54,6 +60,9 @@ class WebLink(GraphLink):
             for command in FREQUENT[kind]:
                 if command in services_of(kind):
                     self._calls.prepare(client, unit, command)
+
+    def _take_diagnostics(self, message: DiagnosticArray) -> None:
+        self.diagnostics += (diagnostics_fields(status) for status in message.status)
 
     def _take_program(self, state: msg.ProgramState) -> None:
         self.programs[state.channel] = {
@@ -105,6 +114,11 @@ class LiveFace(MachineFace):
     def programs(self) -> Mapping[str, Mapping[str, Any]]:
         return self._graph.programs
 
+    def news(self) -> News:
+        news = super().news()
+        news.diagnostics = taken(self._graph.diagnostics)
+        return news
+
     async def _answer_to(self, unit: str, command: str, arguments: Mapping[str, Any], user: str) -> Reply:
         response = await asyncio.wrap_future(self._graph.call(unit, command, arguments))
         number = 0 if response.accepted else response.error_id
@@ -116,6 +130,17 @@ class LiveFace(MachineFace):
     async def run(self) -> None:
         while True:
             await self._graph.turn_async(inf)
+
+
+def diagnostics_fields(status: DiagnosticStatus) -> dict[str, Any]:
+    """Of a node: its level, text, and figures as it names them (recording/node_figures.py)."""
+    values = {value.key: value.value for value in status.values}
+    return {
+        "name": status.name,
+        "level": int.from_bytes(status.level, "little"),
+        "text": status.message,
+        "values": values,
+    }
 
 
 def live_face(*, domain: int | None = None, namespace: str = "", timeout: float = 5.0) -> LiveFace:

@@ -25,12 +25,17 @@ class Login:
     used: float
     token: str = field(default_factory=lambda: secrets.token_urlsafe(24))
     """Against forged requests: pages of other origins cannot read it."""
+    has_logged_out: bool = False
+    is_machine: bool = False
+    """By a token that it sends with each request, and no browser by itself."""
 
 
 class Logins:
     """By the value of their cookie, which nobody can guess."""
 
-    def __init__(self, *, now: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, *, idle_time: float = IDLE_TIME, now: Callable[[], float] = time.monotonic) -> None:
+        """`idle_time` in s."""
+        self._idle_time = idle_time
         self._now = now
         self._logins: dict[str, Login] = {}
 
@@ -54,7 +59,19 @@ class Logins:
         return login
 
     def has_ended(self, login: Login) -> bool:
-        return self._now() - login.used > IDLE_TIME or self._now() - login.begin > LONGEST_TIME
+        if login.has_logged_out:
+            return True
+        return self._now() - login.used > self._idle_time or self._now() - login.begin > LONGEST_TIME
+
+    def of_machine(self, user: str, role: str) -> Login:
+        """One that is not remembered."""
+        return Login(user, role, self._now(), self._now(), is_machine=True)
+
+    def use(self, login: Login) -> None:
+        """Its user has done something."""
+        login.used = self._now()
 
     def end(self, key: str) -> None:
-        self._logins.pop(key, None)
+        login = self._logins.pop(key, None)
+        if login is not None:
+            login.has_logged_out = True  # also for the pages that are open

@@ -17,6 +17,7 @@ from cnc_ptp.nodes.bridge.jog_topics import JogTopics
 from cnc_ptp.protocol.blocks import Event, Severity
 from cnc_ptp.web.description import describe_commands, describe_units
 from cnc_ptp.web.face import Face, News, State
+from cnc_ptp.web.scope import signals_of
 from cnc_ptp.web.unit_fields import unit_states
 
 
@@ -30,15 +31,18 @@ class MachineFace(Face):
         self.cycle_time = self._link.cycle_time
         seen = self._link.seen
         self._events = seen.events()
+        self._records = seen.records()
         self._blocks = {unit: seen.blocks_of(unit) for unit in self.kinds}
         self._turns = {unit: asyncio.Lock() for unit in self.kinds}
-        self._units = describe_units(self.kinds, self._link.parameters_of, self.cycle_time)
+        self.sets = {unit: self._link.parameters_of(unit) for unit, kind in self.kinds.items() if kind != "plc"}
+        self._units = describe_units(self.kinds, self.sets, self.cycle_time)
 
     def machine(self) -> dict[str, Any]:
         block = next(iter(self._link.seen.blocks.values()))
         return {
             "units": self._units,
             "commands": describe_commands(),
+            "signals": signals_of(self.kinds, {unit["name"]: unit.get("unit", "mm") for unit in self._units}),
             "cycle_time": self.cycle_time,
             "block_cycles": block.count,
         }
@@ -60,7 +64,7 @@ class MachineFace(Face):
     def news(self) -> News:
         requests = [*self._link.seen.known_requests()] if "plc" in self._link.seen.blocks else []
         blocks = [(unit, block) for unit, mailbox in self._blocks.items() for block in taken(mailbox.items)]
-        return News(taken(self._events.items), requests, blocks)
+        return News(taken(self._events.items), requests, blocks, taken(self._records.items))
 
     async def ask(self, unit: str, command: str, arguments: Mapping[str, Any], *, user: str) -> Reply:
         if unit not in self.kinds:

@@ -11,6 +11,7 @@ from cnc_ptp.web.jog import Jogs
 from cnc_ptp.web.numbers import BAD_MESSAGE
 from cnc_ptp.web.protocol import NOTHING, Message, answer, field
 from cnc_ptp.web.rights import is_stop, require_page_command, require_role, role_for
+from cnc_ptp.web.scope import Stream, read_signals
 
 if TYPE_CHECKING:
     from cnc_ptp.web.session import Session
@@ -25,6 +26,7 @@ class PageMessages:
         self._session = session
         self._hub = session.hub
         self._jogs = Jogs(session)
+        self._streams = 0
         self._handlers: dict[str, Callable[[Message], Answering | None]] = {
             "command": self._command,
             "jog": self._jogs.take,
@@ -33,6 +35,9 @@ class PageMessages:
             "ask_command": self._ask_command,
             "give_command": self._give_command,
             "acknowledge": self._acknowledge,
+            "load": self._load,
+            "scope": self._scope,
+            "scope_stop": self._scope_stop,
             "ping": self._ping,
         }
 
@@ -72,6 +77,42 @@ class PageMessages:
     async def _ask(self, message: Message, unit: str, command: str, arguments: dict[str, Any]) -> Message:
         reply = await self._hub.require_face().ask(unit, command, arguments, user=self._session.user)
         return answer(message, cycle=reply.cycle, job=reply.job, warning=reply.message, values=dict(reply.values))
+
+    def _load(self, message: Message) -> Answering:
+        """A program of the folder, or its text."""
+        face = self._hub.require_face()
+        channels = [unit for unit, kind in face.kinds.items() if kind == "channel"]
+        channel = field(message, "channel", "text", channels[0] if channels else "channel")
+        name, text = field(message, "name", "text"), field(message, "text", "text", None)
+        if channel not in channels:
+            raise unknown_unit(channel, channels, "channel")
+        what = f"channel {channel}: load"
+        require_role(what, self._session.user, self._session.role, "operator")
+        self._hub.right.require(self._session, what)
+        path = str(self._hub.folder.path(name) if text is None else self._hub.folder.place(name))
+        arguments = {"program": path}
+        if (dialect := field(message, "dialect", "text", None)) is not None:
+            arguments["dialect"] = dialect
+        if text is not None:
+            arguments["text"] = text
+            self._hub.programs.give_text(path, text)
+        return self._ask(message, channel, "load", arguments)
+
+    # the scope
+
+    def _scope(self, message: Message) -> None:
+        """Signals in every cycle, from now on; those of before end."""
+        face = self._hub.require_face()
+        signals = read_signals(field(message, "signals", "list"), face.kinds)
+        self._streams += 1
+        bits = 64 if field(message, "bits", "integer", 32) == 64 else 32
+        self._session.scope = Stream(self._streams, signals, bits=bits) if signals else None
+        names = [signal.name for signal in signals]
+        self._session.send(answer(message, stream=self._streams, signals=names, bits=bits))
+
+    def _scope_stop(self, message: Message) -> None:
+        self._session.scope = None
+        self._session.send(answer(message))
 
     # the command right
 

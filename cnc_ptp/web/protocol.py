@@ -23,12 +23,20 @@ Message = dict[str, Any]
 
 def read_message(text: str) -> Message:
     """A message of a page: a JSON object with a type. Raises CncError 26233."""
+    message = read_body(text)
+    if not isinstance(message.get("type"), str):
+        raise CncError(BAD_MESSAGE, f"message {text[:40]!r} has no type", NOTHING)
+    return message
+
+
+def read_body(text: str) -> Message:
+    """A JSON object. Raises CncError 26233."""
     try:
         message = json.loads(text, parse_constant=refuse_constant)
     except (ValueError, RecursionError):
         raise CncError(BAD_MESSAGE, f"message {text[:40]!r} is no JSON", NOTHING) from None
-    if not isinstance(message, dict) or not isinstance(message.get("type"), str):
-        raise CncError(BAD_MESSAGE, f"message {text[:40]!r} is no object with a type", NOTHING)
+    if not isinstance(message, dict):
+        raise CncError(BAD_MESSAGE, f"message {text[:40]!r} is no object", NOTHING)
     return message
 
 

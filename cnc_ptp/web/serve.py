@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from cnc_ptp.catalogue import entry
 from cnc_ptp.errors import CncError
 from cnc_ptp.web.numbers import NO_AIOHTTP, NO_PORT
+from cnc_ptp.web.security import tls_context
 
 HOST = "127.0.0.1"
 DEFAULT_PORT = 8080
@@ -28,10 +29,19 @@ class WebOptions:
     host: str = HOST
     names: tuple[str, ...] = field(default=())
     """More names of this computer under which pages may be asked for."""
+    programs: str = "."
+    """Folder of NC programs."""
+    certificate: str | None = None
+    key: str | None = None
+    """Files (PEM) for TLS."""
+    users: str | None = None
+    """File of users; None: no login."""
 
     @property
     def address(self) -> str:
-        return f"http://{'localhost' if self.host == HOST else self.host}:{self.port}"
+        scheme = "http" if self.certificate is None else "https"
+        host = "localhost" if self.host == HOST else f"[{self.host}]" if ":" in self.host else self.host
+        return f"{scheme}://{host}:{self.port}"
 
 
 def require_packages() -> None:
@@ -63,15 +73,21 @@ async def serve(
     """Until SIGINT or SIGTERM. `connect` gives the face of the machine; `tell` gets the address."""
     from aiohttp import web
 
-    from cnc_ptp.web.access import LOCAL_NAMES, Access, Names
+    from cnc_ptp.web.access import Access
+    from cnc_ptp.web.guard import LOCAL_NAMES, Names
     from cnc_ptp.web.hub import Hub
+    from cnc_ptp.web.programs import ProgramFolder
     from cnc_ptp.web.server import Server
+    from cnc_ptp.web.users import Users
 
+    tls = tls_context(options.certificate, options.key)
     entry(NO_PORT)  # the catalogue is read now, and not when the first page gets an error
-    server = Server(Hub(connect), Access(needs_login=False), Names((*LOCAL_NAMES, *options.names)))  # type: ignore[arg-type]
+    hub = Hub(connect, folder=ProgramFolder(options.programs))  # type: ignore[arg-type]
+    access = Access(None if options.users is None else Users(options.users))
+    server = Server(hub, access, Names((*LOCAL_NAMES, options.host, *options.names)))
     runner = web.AppRunner(server.app, access_log=None)
     await runner.setup()
-    await web.SockSite(runner, listening).start()
+    await web.SockSite(runner, listening, ssl_context=tls).start()
     tell(options.address)
     ended = asyncio.Event()
     loop = asyncio.get_running_loop()

@@ -9,11 +9,13 @@ from typing import Any
 from aiohttp import WSCloseCode, WSMsgType, web
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.web.access import Access, Names, make_middleware
+from cnc_ptp.web.access import COOKIE, Access
+from cnc_ptp.web.guard import Names, make_guard
 from cnc_ptp.web.hub import Hub
 from cnc_ptp.web.logins import Login
 from cnc_ptp.web.numbers import BAD_MESSAGE, TOO_MANY_SESSIONS
-from cnc_ptp.web.protocol import LARGEST_MESSAGE, NOTHING, error_fields, field, frame, read_message
+from cnc_ptp.web.program_routes import ProgramRoutes
+from cnc_ptp.web.protocol import LARGEST_MESSAGE, NOTHING, error_fields, field, frame, read_body, read_message
 from cnc_ptp.web.session import Session
 
 STATIC = Path(__file__).parent / "static"
@@ -31,13 +33,16 @@ class Server:
 
     def __init__(self, hub: Hub, access: Access, names: Names) -> None:
         self.hub, self.access = hub, access
-        self.app = web.Application(middlewares=[make_middleware(names)], client_max_size=LARGEST_MESSAGE)
+        self.app = web.Application(middlewares=[make_guard(names)], client_max_size=LARGEST_MESSAGE)
         self.app.on_startup.append(self._begin)
         self.app.on_shutdown.append(self._end)
         self.app.router.add_get("/", self._index)
         self.app.router.add_get("/api/session", self._session)
+        self.app.router.add_post("/api/login", self._log_in)
+        self.app.router.add_post("/api/logout", self._log_out)
         self.app.router.add_get("/ws", self._socket)
         self.app.router.add_static("/static", STATIC)
+        ProgramRoutes(hub, access).add_to(self.app)
 
     async def _begin(self, _app: web.Application) -> None:
         self.hub.begin()
@@ -56,6 +61,22 @@ class Server:
         fields = {"user": login.user, "role": login.role, "token": login.token, "login": self.access.needs_login}
         return web.json_response(fields, headers={"Cache-Control": "no-store"})
 
+    async def _log_in(self, request: web.Request) -> web.StreamResponse:
+        """{"user": …, "password": …}"""
+        message = {"type": "login", **read_body(await request.text())}
+        user, password = field(message, "user", "text"), field(message, "password", "text")
+        key = await self.access.log_in(user, password)
+        response = web.json_response({"user": user})
+        self.access.remember(request, response, key)
+        return response
+
+    async def _log_out(self, request: web.Request) -> web.StreamResponse:
+        self.access.require_page(request)
+        self.access.log_out(request)
+        response = web.json_response({})
+        response.del_cookie(COOKIE)
+        return response
+
     async def _socket(self, request: web.Request) -> web.StreamResponse:
         login = self.access.login_of(request)
         if len(self.hub.sessions) >= MOST_SESSIONS:
@@ -63,7 +84,7 @@ class Server:
         socket = web.WebSocketResponse(max_msg_size=LARGEST_MESSAGE, heartbeat=SILENCE, autoping=True)
         await socket.prepare(request)
         if await self._is_own_page(socket, login):
-            session = Session(self.hub, socket, user=login.user, role=login.role, number=next(NUMBERS))
+            session = Session(self.hub, socket, self.access, login, number=next(NUMBERS))
             self.hub.add(session)
             await session.run()
         return socket

@@ -13,12 +13,15 @@ from aiohttp import WSCloseCode, WSMsgType, web
 from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import CycleBlock
 from cnc_ptp.web.face import State
-from cnc_ptp.web.numbers import TOO_MANY_MESSAGES
+from cnc_ptp.web.logins import Login
+from cnc_ptp.web.numbers import SESSION_ENDED, TOO_MANY_MESSAGES
 from cnc_ptp.web.page_messages import PageMessages
 from cnc_ptp.web.protocol import Message, error_fields, frame, read_message, refusal
 from cnc_ptp.web.rate import Rate
+from cnc_ptp.web.scope import Stream
 
 if TYPE_CHECKING:
+    from cnc_ptp.web.access import Access
     from cnc_ptp.web.hub import Hub
 
 MOST_PER_SECOND = 200
@@ -33,11 +36,14 @@ LONGEST_STALL = 10.0
 class Session:
     """A page. Its messages are handled in their order, but for commands, which wait for their answers beside."""
 
-    def __init__(self, hub: Hub, socket: web.WebSocketResponse, *, user: str, role: str, number: int) -> None:
+    def __init__(self, hub: Hub, socket: web.WebSocketResponse, access: Access, login: Login, *, number: int) -> None:
         self.hub = hub
-        self.user, self.role, self.number = user, role, number
+        self.user, self.role, self.number = login.user, login.role, number
+        self._access, self._login = access, login
         self.is_behind = True
         """It gets the whole state next."""
+        self.scope: Stream | None = None
+        self._is_ending = False
         self._socket = socket
         self._outgoing: deque[str | bytes] = deque()
         self._something = asyncio.Event()
@@ -78,7 +84,12 @@ class Session:
         self.send({"type": "state", "time": round(time, 3), "units": shown})
 
     def take_blocks(self, blocks: Sequence[tuple[str, CycleBlock]]) -> None:
-        """New blocks, for its scope."""
+        """New blocks, for its scope; a page that does not follow gets none, and its scope shows the gap."""
+        if self.scope is None:
+            return
+        for data in self.scope.take(blocks):
+            if not self.is_stalled:
+                self.send_frame(data)
 
     # from the page
 
@@ -109,10 +120,35 @@ class Session:
             await asyncio.wait_for(self._socket.send_str(frame({"type": "error", **error_fields(error)})), 1.0)
         await self.close(WSCloseCode.POLICY_VIOLATION, error.message)
 
+    def require_login(self) -> None:
+        """Raises CncError 26239 when the login of the page has ended."""
+        if not self._access.is_valid(self._login):
+            raise CncError(SESSION_ENDED, f"the login of {self.user} has ended", "the page is cut off; log in")
+
+    def end_without_login(self) -> None:
+        """Ends the page of a login that has ended."""
+        if self._is_ending:
+            return
+        try:
+            self.require_login()
+        except CncError as error:
+            self._is_ending = True
+            self._messages.end()
+            self.send({"type": "error", **error_fields(error)})
+            task = asyncio.create_task(self._say_goodbye())
+            self._tasks.add(task)
+
+    async def _say_goodbye(self) -> None:
+        await asyncio.sleep(0)  # the error is sent first
+        await self.close(WSCloseCode.POLICY_VIOLATION)
+
     def _take(self, text: str) -> None:
         message: Message = {}
         try:
             message = read_message(text)
+            self.require_login()
+            if message["type"] != "ping":
+                self._access.logins.use(self._login)
             handled = self._messages.handle(message)
         except CncError as error:
             self._refuse(message, error)

@@ -4,15 +4,21 @@ import asyncio
 from contextlib import asynccontextmanager
 from pathlib import Path
 
+import numpy as np
 from aiohttp.test_utils import TestClient, TestServer
 
-from cnc_ptp.web.access import Access, Names
+from cnc_ptp.web.access import Access
+from cnc_ptp.web.guard import Names
 from cnc_ptp.web.hub import Hub
 from cnc_ptp.web.machine_face import offline_face
+from cnc_ptp.web.programs import ProgramFolder
+from cnc_ptp.web.scope import HEAD
 from cnc_ptp.web.server import Server
+from cnc_ptp.web.users import Users
 
 ROOT = Path(__file__).parents[2]
 MILL = str(ROOT / "config" / "mill.yaml")
+EXAMPLES = str(ROOT / "examples")
 PATIENCE = 10.0
 
 
@@ -22,15 +28,28 @@ class Page:
     def __init__(self, socket):
         self.socket = socket
         self.waiting = []
+        self.frames = []
         self._ids = 0
 
     async def send(self, **message):
         await self.socket.send_json(message)
 
     async def next(self):
-        message = await asyncio.wait_for(self.socket.receive(), PATIENCE)
-        assert message.type.name == "TEXT", message
-        return message.json()
+        while True:
+            message = await asyncio.wait_for(self.socket.receive(), PATIENCE)
+            if message.type.name == "TEXT":
+                return message.json()
+            assert message.type.name == "BINARY", message
+            self.frames.append(message.data)
+
+    async def frame(self, bits=32):
+        """The next frame of the scope: its first cycle, and its samples by signal."""
+        while not self.frames:
+            self.waiting.append(await self.next())
+        data = self.frames.pop(0)
+        _, low, high, signals, samples = HEAD.unpack_from(data)
+        values = np.frombuffer(data, dtype=f"<f{bits // 8}", offset=HEAD.size).reshape(signals, samples)
+        return low + (high << 32), values
 
     async def wait_for(self, kind, condition=lambda message: True):
         """The first message of a type that fulfils a condition and was not waited for before."""
@@ -86,10 +105,10 @@ class Site:
 
 
 @asynccontextmanager
-async def site(machine=MILL, *, connect=None, needs_login=False):
+async def site(machine=MILL, *, connect=None, users=None, programs=EXAMPLES):
     """`connect` gives the face; the one of an offline machine without it."""
-    hub = Hub(connect or (lambda: offline_face(machine)), name="mill")
-    access = Access(needs_login=needs_login)
+    hub = Hub(connect or (lambda: offline_face(machine)), name="mill", folder=ProgramFolder(programs))
+    access = Access(None if users is None else Users(str(users)))
     server = Server(hub, access, Names())
     client = TestClient(TestServer(server.app))
     await client.start_server()

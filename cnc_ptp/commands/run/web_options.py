@@ -13,6 +13,16 @@ from cnc_ptp.web.serve import DEFAULT_PORT, HOST
 def web_options(function: Callable[..., Any]) -> Callable[..., Any]:
     """Options of `cnc_ptp web`."""
     for option in (
+        click.option("--users", type=click.Path(dir_okay=False), help="File of users; without it there is no login."),
+        click.option("--tls-key", "key", type=click.Path(dir_okay=False), help="Its private key, PEM."),
+        click.option("--tls-cert", "certificate", type=click.Path(dir_okay=False), help="Certificate for TLS, PEM."),
+        click.option(
+            "--programs",
+            type=click.Path(file_okay=False),
+            default=".",
+            show_default=True,
+            help="Folder of NC programs.",
+        ),
         click.option("--name", "names", multiple=True, help="A further name under which pages may be asked for."),
         click.option("--host", default=HOST, show_default=True, help="Address to listen on."),
         click.option("--port", type=click.IntRange(1, 65535), default=DEFAULT_PORT, show_default=True, help="Port."),

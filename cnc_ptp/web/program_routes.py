@@ -1,0 +1,90 @@
+"""Programs over HTTP: the list, their texts, uploads."""
+
+from __future__ import annotations
+
+import asyncio
+
+from aiohttp import web
+
+from cnc_ptp.client.faults import unknown_unit
+from cnc_ptp.errors import CncError
+from cnc_ptp.web.access import Access
+from cnc_ptp.web.backplot import Drawing
+from cnc_ptp.web.guard import refuse
+from cnc_ptp.web.hub import Hub
+from cnc_ptp.web.numbers import PROGRAM_EXISTS, TOO_LARGE, TOO_MANY_MESSAGES
+from cnc_ptp.web.programs import require_name
+from cnc_ptp.web.rate import Rate
+from cnc_ptp.web.rights import require_role
+
+PLAIN = "text/plain"
+
+
+class ProgramRoutes:
+    """/api/programs"""
+
+    def __init__(self, hub: Hub, access: Access) -> None:
+        self._hub, self._access = hub, access
+        self._rate = Rate(1.0, 20.0)
+
+    def add_to(self, app: web.Application) -> None:
+        app.router.add_get("/api/programs", self._list)
+        app.router.add_post("/api/programs", self._upload)
+        app.router.add_get("/api/programs/{name}", self._text)
+        app.router.add_get("/api/backplot", self._backplot)
+
+    async def _list(self, request: web.Request) -> web.StreamResponse:
+        self._access.login_of(request)
+        folder = self._hub.folder
+        programs = await asyncio.to_thread(folder.list)
+        return web.json_response({"programs": programs, "limit": folder.largest})
+
+    async def _text(self, request: web.Request) -> web.StreamResponse:
+        """Always as plain text: what is in a program is never taken for a page."""
+        self._access.login_of(request)
+        text = await asyncio.to_thread(self._hub.programs.text, request.match_info["name"])
+        return web.Response(text=text, content_type=PLAIN, charset="utf-8", headers={"Cache-Control": "no-store"})
+
+    async def _upload(self, request: web.Request) -> web.StreamResponse:
+        """`?name=N`, and `&replace=1` for one that is there; the body is the program."""
+        login = self._access.require_page(request)
+        require_role("upload", login.user, login.role, "operator")
+        if not self._rate.permits():
+            raise CncError(TOO_MANY_MESSAGES, "upload: too many programs in a short time", "nothing was written; wait")
+        name = request.query.get("name", "")
+        require_name(name)
+        try:
+            content = await self._content(request)
+            replace = request.query.get("replace") == "1"
+            listed = await asyncio.to_thread(self._hub.folder.save, name, content, replace=replace)
+        except CncError as error:
+            if error.number == TOO_LARGE:
+                request.protocol.close()  # the rest is not even read
+            return refuse(error, {TOO_LARGE: 413, PROGRAM_EXISTS: 409}.get(error.number, 400))
+        self._hub.to_all({"type": "programs"})
+        return web.json_response(listed._asdict())
+
+    async def _backplot(self, request: web.Request) -> web.StreamResponse:
+        """`?channel=C`: the path of its program (backplot.py says in which form)."""
+        self._access.login_of(request)
+        face = self._hub.require_face()
+        channel = request.query.get("channel", "channel")
+        if face.kinds.get(channel) != "channel":
+            raise unknown_unit(channel, [unit for unit, kind in face.kinds.items() if kind == "channel"], "channel")
+        path, text = await asyncio.to_thread(self._hub.programs.loaded_text, channel)
+        drawing = Drawing(channel, face.kinds, face.sets, face.cycle_time, text, path)
+        points = await self._hub.office.draw(drawing)
+        headers = {"Cache-Control": "no-store"}
+        response = web.Response(body=points, content_type="application/octet-stream", headers=headers)
+        response.enable_compression()
+        return response
+
+    async def _content(self, request: web.Request) -> bytes:
+        """Refused as soon as it is known to be too large."""
+        folder = self._hub.folder
+        folder.require_size(request.content_length or 0)
+        content = bytearray()
+        async for part in request.content.iter_chunked(1 << 16):
+            content += part
+            folder.require_size(len(content))
+        return bytes(content)

@@ -1,0 +1,75 @@
+"""A page says hello, sees the machine, commands it."""
+
+import asyncio
+
+from web_support import site
+
+from cnc_ptp.web.backplot import HEAD
+
+
+def test_a_page_sees_the_machine_and_moves_an_axis():
+    async def story():
+        async with site() as here:
+            page = await here.page()
+            names = [unit["name"] for unit in page.hello["machine"]["units"]]
+            assert names == ["plc", "channel", "s", "x", "y", "z"]
+            assert (page.hello["user"], page.hello["role"]) == ("web", "commissioner")
+            answer = await page.command("x", "move_absolute", target=1.5)
+            assert answer["ok"], answer
+            await page.state_of("x", lambda x: x["set_position"] == 1.5 and x["state"] == "Standstill")
+
+    asyncio.run(story())
+
+
+def test_a_refusal_has_number_text_cause_and_remedy():
+    async def story():
+        async with site() as here:
+            page = await here.page()
+            answer = await page.command("x", "move_absolute", target=5000)
+            assert answer == {
+                "type": "answer",
+                "id": 2,
+                "ok": False,
+                "number": answer["number"],
+                "text": answer["text"],
+                "cause": answer["cause"],
+                "remedy": answer["remedy"],
+            }
+            assert answer["number"] and answer["cause"] and answer["remedy"]
+            event = await page.wait_for("event", lambda event: event["number"] == answer["number"])
+            assert (event["source"], event["severity"], event["acknowledged"]) == ("x", "warning", False)
+
+    asyncio.run(story())
+
+
+def test_a_program_is_listed_loaded_and_run():
+    async def story():
+        async with site() as here:
+            page = await here.page()
+            listed = await (await here.client.get("/api/programs")).json()
+            assert "bracket.nc" in [program["name"] for program in listed["programs"]]
+            assert (await page.ask("load", name="pocket.nc"))["ok"]
+            assert (await page.wait_for("program"))["name"] == "pocket.nc"
+            text = await (await here.client.get("/api/programs/pocket.nc")).text()
+            assert text.startswith("; A pocket in layers")
+            drawn = await (await here.client.get("/api/backplot", params={"channel": "channel"})).read()
+            assert HEAD.unpack_from(drawn)[:3] == (1, (len(drawn) - HEAD.size) // 20, 0)
+            assert (await page.command("channel", "start"))["ok"]
+            await page.state_of("channel", lambda channel: channel["line"] > 3 and channel["active"])
+
+    asyncio.run(story())
+
+
+def test_the_scope_has_every_cycle():
+    async def story():
+        async with site() as here:
+            page = await here.page()
+            answer = await page.ask("scope", signals=["x.set_position", "channel.line"])
+            assert answer["ok"], answer
+            await page.command("x", "move_absolute", target=1)
+            frames = [await page.frame() for _ in range(10)]
+            cycles = [cycle for first, values in frames for cycle in range(first, first + values.shape[1])]
+            assert cycles == [*range(cycles[0], cycles[0] + len(cycles))]
+            assert frames[0][1].shape[0] == 2
+
+    asyncio.run(story())
