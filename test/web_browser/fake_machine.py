@@ -165,7 +165,8 @@ class Fake:
         machine = {"name": "Demo mill", "units": units, "commands": COMMANDS, "cycle_time": 0.001, "block_cycles": 10, "recording": self.recording, "signals": signals}
         if self.recording:
             machine |= {"start": 0.0, "end": 30.0}
-        return {"type": "hello", "version": 1, "user": "web", "role": "commissioner", "page": page, "machine": machine, "operator": self.operator(), "alarms": [], "handshakes": []}
+        offsets = {"channel": {"channel": "channel", "axes": ["X", "Y", "Z"], "zero_index": 1, "zero_name": "", "zero_offset": [12.5, 0.0, -3.0]}}
+        return {"type": "hello", "offsets": offsets, "programs": [], "version": 1, "user": "web", "role": "commissioner", "page": page, "machine": machine, "operator": self.operator(), "alarms": [], "handshakes": []}
 
     def operator(self) -> dict[str, Any]:
         return {"holder": None if self.holder is None else {"user": "web", "page": self.holder}, "asking": None}
@@ -196,7 +197,7 @@ class Fake:
             await self.tell({"type": "operator", **self.operator()})
         elif kind == "scope":
             self.signals[page] = message["signals"]
-            fields = {"stream": page, "signals": [{"name": name, "unit": "mm"} for name in message["signals"]]}
+            fields = {"stream": page, "signals": message["signals"], "bits": 32}
         elif kind == "scope_stop":
             self.signals.pop(page, None)
         elif kind == "command":
@@ -205,8 +206,6 @@ class Fake:
             self.state["channel"] |= {"program": message["name"], "state": "ready"}
             await self.tell({"type": "program", "channel": "channel", "name": message["name"]})
             await self.tell({"type": "backplot", "channel": "channel", "name": message["name"], "points": self.points})
-        elif kind == "offsets":
-            fields = {"axes": ["X", "Y", "Z"], "offsets": [{"index": 1, "name": "G54", "values": {"X": 12.5, "Y": 0, "Z": -3}}]}
         elif kind == "acknowledge":
             await self.tell({"type": "acknowledged", "alarms": [message["alarm"]] if message.get("alarm") else [*range(1, self.alarm + 1)], "user": "web"})
         if message.get("id") is not None:
@@ -247,8 +246,9 @@ class Fake:
             await self._tell_state()
             await self._tell_samples()
             if self.cycle % 1000 == 0:
-                node = {"lateness_p99_ms": 2.1, "lateness_max_ms": 4.7, "cpu_percent": 11.0, "buffer": 3, "late_blocks": 0}
-                await self.tell({"type": "diagnostics", "nodes": [{"name": name, **node} for name in ("channel", "x", "y", "z", "s", "plc", "clock")]})
+                values = {"lateness p99 [ms]": "2.1", "lateness, largest [ms]": "4.7", "lost blocks": "0"}
+                nodes = [{"name": name, "level": 0, "text": "Standstill", "values": values} for name in ("channel", "x", "y", "z", "s", "plc", "clock")]
+                await self.tell({"type": "diagnostics", "nodes": nodes})
 
     async def _tell_state(self) -> None:
         angle = self.time * 0.5

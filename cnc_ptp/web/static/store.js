@@ -17,7 +17,8 @@ export class Store {
     this.events = [];
     this.handshakes = new Map();
     this.programs = {};
-    this.diagnostics = null;
+    this.offsets = {};
+    this.nodes = new Map();
     this._listeners = new Map();
   }
 
@@ -79,6 +80,9 @@ const HANDLERS = {
     if (message.operator) store.operator = message.operator;
     store.alarms = message.alarms || [];
     store.handshakes = new Map((message.handshakes || []).map((request) => [request.id, request]));
+    store.programs = Object.fromEntries((message.programs || []).map((program) => [program.channel, program]));
+    store.offsets = message.offsets || {};
+    store.nodes.clear();
     store.tell("alarms");
     store.tell("operator");
   },
@@ -115,8 +119,11 @@ const HANDLERS = {
   program(store, message) {
     store.programs[message.channel || store.channel] = message;
   },
+  offsets(store, message) {
+    store.offsets[message.channel] = message;
+  },
   diagnostics(store, message) {
-    store.diagnostics = message;
+    for (const node of message.nodes || []) store.nodes.set(node.name, { ...store.nodes.get(node.name), ...node });
   },
   gone(store, message) {
     store.why = message;

@@ -13,22 +13,15 @@ export function offsets(app) {
   const active = h("p", { class: "muted" });
   const element = panel("Zero offsets", active, h("fieldset", { class: "commands" }, h("div", { class: "scroll" }, table)));
 
-  async function fill() {
-    let answer;
-    try {
-      answer = await app.connection.request("offsets", { channel: store.channel });
-    } catch {
-      return; // a server that does not offer them: values may still be set
-    }
-    for (const { index, values } of answer.offsets || []) rows[index - 1]?.fill(values);
-  }
+  /** The server tells the values of the active offset; those of others are shown once they have been active, or set here. */
   const update = () => {
-    const { zero_name: name, zero_index: index } = store.state(store.channel);
-    say(active, name || index ? `Active: ${name || NAMES[index - 1]}` : "A value counts when the offset is selected next.");
-    rows.forEach((one, i) => one.element.classList.toggle("active", index === i + 1));
+    const now = store.offsets[store.channel];
+    const name = now && (now.zero_name || NAMES[now.zero_index - 1] || "G53");
+    say(active, now ? `Active: ${name}. A new value counts when the offset is selected next.` : "A value counts when the offset is selected next.");
+    rows.forEach((one, i) => one.element.classList.toggle("active", now?.zero_index === i + 1));
+    if (now) rows[now.zero_index - 1]?.fill(Object.fromEntries(now.axes.map((axis, i) => [axis, Number(now.zero_offset[i].toFixed(6))])));
   };
-  const ends = [store.on("state", update), store.on("offsets", fill)];
-  fill();
+  const ends = [store.on("offsets", update)];
   update();
   return { element, end: () => ends.forEach((end) => end()) };
 }
@@ -42,7 +35,7 @@ function row(app, index, name, axes) {
       if (cell.value !== "" && (await app.command(channel, "set_zero_offset", { index, axis: cell.dataset.axis, value }))) app.notices.show("info", `${name} ${cell.dataset.axis} = ${fixed(value, 3)}`);
     });
   }
-  const teach = (axis) => app.command(channel, "teach_zero_offset", { index, ...(axis ? { axis } : {}), value: 0 }).then((answer) => answer && app.store.tell("offsets"));
+  const teach = (axis) => app.command(channel, "teach_zero_offset", { index, ...(axis ? { axis } : {}), value: 0 }).then((answer) => answer && app.notices.show("info", `${name}: the present position is taught; it counts when ${name} is selected next.`));
   const buttons = [button("all", () => teach(), { class: "small", "aria-label": `Teach ${name}, all axes` }), ...axes.map((axis) => button(axis, () => teach(axis), { class: "small", "aria-label": `Teach ${name} ${axis}` }))];
   return {
     element: h("tr", {}, h("th", { scope: "row" }, name), cells.map((cell) => h("td", {}, cell)), h("td", {}, h("div", { class: "row" }, buttons))),

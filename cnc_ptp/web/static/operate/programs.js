@@ -1,5 +1,7 @@
 // Programs of the server's folder: list, text, upload, load.
 
+const EXISTS = 26257; // the number of a name that is taken
+
 export async function listPrograms(app) {
   const answer = await app.attempt(app.connection.http("/api/programs"));
   return answer?.programs || [];
@@ -17,7 +19,14 @@ export async function loadProgram(app, name) {
 /** Uploads a file and loads it. */
 export async function upload(app, file) {
   const path = `/api/programs?name=${encodeURIComponent(file.name)}`;
-  const answer = await app.attempt(app.connection.http(path, { method: "POST", body: file, headers: { "Content-Type": "text/plain" } }));
+  const send = (how) => app.connection.http(path + how, { method: "POST", body: file, headers: { "Content-Type": "text/plain" } });
+  let answer;
+  try {
+    answer = await send("");
+  } catch (error) {
+    const replaces = error.number === EXISTS && window.confirm(`${file.name} is in the program folder already. Replace it?`);
+    answer = replaces ? await app.attempt(send("&replace=1")) : error.number === EXISTS ? null : app.notices.refused(error);
+  }
   if (!answer) return false;
   app.notices.show("info", `${answer.name ?? file.name} is uploaded.`);
   return Boolean(await loadProgram(app, answer.name ?? file.name));

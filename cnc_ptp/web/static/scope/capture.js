@@ -16,7 +16,6 @@ export class Capture {
     this.trigger = new Trigger();
     this.held = null; // {ring, from, to, zero}
     this.isFrozen = false;
-    this.units = new Map();
     this.ring = new Ring(0, 1);
     this.version = 0;
     this._columns = [];
@@ -52,7 +51,6 @@ export class Capture {
     const answer = await this.app.request("scope", { signals: this._names });
     if (!answer || turn !== this._turn) return;
     this._stream = answer.stream;
-    for (const [i, signal] of (answer.signals || []).entries()) this.units.set(this._names[i], signal.unit || "");
   }
 
   _fresh() {

@@ -2,23 +2,30 @@
 import { h, panel, say } from "../dom.js";
 import { fixed } from "../format.js";
 
-const COLUMNS = [["name", "Node"], ["lateness_p99_ms", "Late p99 ms"], ["lateness_max_ms", "max ms"], ["buffer", "Buffer"], ["late_blocks", "Late blocks"], ["cpu_percent", "CPU %"]];
+const COLUMNS = [
+  ["lateness p99 [ms]", "Late p99 ms"], ["lateness, largest [ms]", "max ms"], ["lost blocks", "Lost blocks"],
+  ["buffer of interpreted blocks, least [%]", "Buffer %"], ["cpu [%]", "CPU %"],
+];
+const LEVELS = ["", "warn", "bad", "off"];
 
 export function diagnostics(app) {
   const { store } = app;
   const nodes = h("tbody", {});
   const none = h("p", { class: "muted" }, "No figures of nodes yet.");
-  const head = h("thead", {}, h("tr", {}, COLUMNS.map(([, title]) => h("th", { scope: "col" }, title))));
+  const head = h("thead", {}, h("tr", {}, [["", "Node"], ...COLUMNS, ["", "State"]].map(([, title]) => h("th", { scope: "col" }, title))));
   const table = h("div", { class: "scroll", tabIndex: 0, role: "region", "aria-label": "Figures of the nodes" }, h("table", {}, head, nodes));
   const errors = store.of("axis").map((axis) => follower(axis));
   const headOfAxes = h("thead", {}, h("tr", {}, ["Axis", "Following error", "Largest since the page is open"].map((title) => h("th", { scope: "col" }, title))));
   const element = panel("Diagnostics", none, table, h("table", {}, headOfAxes, h("tbody", {}, errors.map((one) => one.element))));
 
   function show() {
-    const rows = store.diagnostics?.nodes || [];
+    const rows = [...store.nodes.values()];
     none.hidden = rows.length > 0;
     table.hidden = rows.length === 0;
-    nodes.replaceChildren(...rows.map((row) => h("tr", {}, COLUMNS.map(([name]) => h("td", { class: name === "name" ? "" : "number" }, typeof row[name] === "number" ? fixed(row[name], Number.isInteger(row[name]) ? 0 : 1) : row[name] ?? "–")))));
+    nodes.replaceChildren(...rows.map(({ name, level = 0, text = "", values = {} }) => {
+      const state = h("span", { dataset: { kind: LEVELS[level] ?? "bad" } }, text);
+      return h("tr", {}, h("th", { scope: "row" }, name), COLUMNS.map(([key]) => h("td", { class: "number" }, values[key] ?? "–")), h("td", {}, state));
+    }));
   }
   const update = () => errors.forEach((one) => one.update(store.state(one.name)));
   const ends = [store.on("diagnostics", show), store.on("state", update)];
