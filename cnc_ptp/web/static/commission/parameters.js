@@ -16,7 +16,7 @@ export function browser(app, unit, wanted, title) {
   const body = h("tbody", {});
   const head = h("thead", {}, h("tr", {}, ["Parameter", "Value", "Unit", "Range", "Default", "Changes", "Meaning"].map((text) => h("th", { scope: "col" }, text))));
   const status = h("p", { class: "muted", role: "status" }, "Reading …");
-  const table = h("div", { class: "scroll", tabIndex: 0, role: "region", "aria-label": `${title} of ${unit.name}` }, h("table", { class: "parameters" }, head, body));
+  const table = h("div", { class: "scroll", tabIndex: 0, role: "region", "aria-label": `Table of ${title.toLowerCase()} of ${unit.name}` }, h("table", { class: "parameters" }, head, body));
   const element = panel(title, h("div", { class: "row end" }, field("Find", find), field("Changes", change)), status, h("fieldset", { class: "commands", dataset: { role: "commissioner" } }, table));
   let rows = [];
 

@@ -52,9 +52,9 @@ export function ptpTest(app, unit) {
     app.command(unit.name, "halt");
   };
   const element = h(
-    "div", { class: "stack" },
+    "div", { class: "beside" },
     panel(
-      "PTP test",
+      "To and fro",
       h("fieldset", { class: "commands" }, h("div", { class: "row end" }, Object.entries(numbers).map(([name, [text]]) => field(text, inputs[name])), field("Override in %", override)), h("div", { class: "row" }, button("Start", start, { class: "primary" }), repeat)),
       h("div", { class: "row" }, button("Stop", stop)), status,
     ),

@@ -19,7 +19,7 @@ export function programPanel(app) {
   const file = h("input", { type: "file", "aria-label": "Upload a program", accept: ".nc,.ngc,.mpf,.txt,text/plain", class: "visually-hidden", tabIndex: -1 });
   const find = h("input", { type: "search", placeholder: "Find, or a line number", "aria-label": "Find in the program" });
   const title = h("span", { class: "program-name" });
-  const active = h("code", { class: "active-block", "aria-label": "Active block" });
+  const active = h("code", { class: "active-block" });
   const element = panel(
     "Program",
     h("div", { class: "row" }, title, active),

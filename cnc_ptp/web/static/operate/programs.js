@@ -68,7 +68,6 @@ export function followProgram(app, show) {
 }
 
 export function programName(store) {
-  const told = store.programs[store.channel]?.name;
-  const path = told ?? store.state(store.channel).program ?? "";
-  return path.split("/").pop();
+  const path = store.state(store.channel).program || "";
+  return store.programs[store.channel]?.name ?? path.split("/").pop();
 }

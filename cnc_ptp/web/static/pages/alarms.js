@@ -15,7 +15,7 @@ function events(app) {
   const { store } = app;
   const body = h("tbody", {});
   const head = h("thead", {}, h("tr", {}, ["Time", "Source", "Event"].map((title) => h("th", { scope: "col" }, title))));
-  const table = h("div", { class: "scroll events", tabIndex: 0, role: "region", "aria-label": "Events" }, h("table", {}, head, body));
+  const table = h("div", { class: "scroll events", tabIndex: 0, role: "region", "aria-label": "List of events" }, h("table", {}, head, body));
   const row = (event) => h("tr", {}, h("td", { class: "number" }, `${fixed(event.time, 3)} s`), h("td", {}, event.source), h("td", {}, event.text));
   body.append(...[...store.events].reverse().map(row));
   const end = store.on("event", (event) => {

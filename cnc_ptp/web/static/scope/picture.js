@@ -35,7 +35,7 @@ export class Picture {
     this._between = h("p", { class: "muted number", role: "status" });
     const names = ["Signal", "Min", "Max", "Mean", "RMS", "Peak to peak", "Slope /s", "A", "B", "B − A"];
     const head = h("thead", {}, h("tr", {}, names.map((name) => h("th", { scope: "col" }, name))));
-    const table = h("div", { class: "scroll", tabIndex: 0, role: "region", "aria-label": "Measures" }, h("table", { class: "measures" }, head, this._measures));
+    const table = h("div", { class: "scroll", tabIndex: 0, role: "region", "aria-label": "Table of measures" }, h("table", { class: "measures" }, head, this._measures));
     return panel("Measures", h("div", { class: "row end" }, inputs, this._between), table);
   }
 
