@@ -183,7 +183,7 @@ def test_positions_of_work_and_machine(look, fake):
     shift = "() => app.store.units.z.work_position - app.store.units.z.set_position"
     assert page.evaluate(shift) == -10
     assert page.inner_text("[data-axis=z] .big") == "−15.000"
-    page.click("text=Work")
+    page.click("button:text-is('Machine')")
     assert page.inner_text("[data-axis=z] .big") == "−5.000"
-    page.click("button:text-is('Set')")
+    page.click("button:text-is('Actual')")
     assert page.inner_text("[data-axis=z] .big") == "−5.004"

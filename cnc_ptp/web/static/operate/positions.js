@@ -9,18 +9,18 @@ export function positions(app) {
   let work = true;
   let actual = false;
   const show = () => {
-    press(coordinates, work);
+    press(coordinates, !work);
     press(kind, actual);
-    say(coordinates, work ? "Work" : "Machine");
-    say(kind, actual ? "Actual" : "Set");
+    say(shown, `${work ? "Work" : "Machine"} coordinates, ${actual ? "actual" : "set"} values`);
     update();
   };
-  const coordinates = toggle("Work", () => ((work = !work), show()), { "aria-label": "Work coordinates" });
-  const kind = toggle("Set", () => ((actual = !actual), show()), { "aria-label": "Actual positions" });
+  const coordinates = toggle("Machine", () => ((work = !work), show()));
+  const kind = toggle("Actual", () => ((actual = !actual), show()));
+  const shown = h("span", { class: "muted" });
   const rows = store.of("axis").map((axis) => row(axis));
   const body = h("tbody", {}, rows.map((one) => one.element));
   const head = h("thead", {}, h("tr", {}, ["Axis", "Position", "To go", "Set", "Actual"].map((name) => h("th", { scope: "col" }, name))));
-  const element = panel("Position", h("div", { class: "row" }, coordinates, kind), h("div", { class: "scroll" }, h("table", { class: "positions" }, head, body)));
+  const element = panel("Position", h("div", { class: "row" }, coordinates, kind, shown), h("div", { class: "scroll" }, h("table", { class: "positions" }, head, body)));
 
   function update() {
     for (const one of rows) one.update(store.state(one.name), work, actual);
