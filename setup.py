@@ -181,6 +181,7 @@ setup(
             "nc/cycles/*.nc",
             "nodes/*.xml",
             "plots/*.js",
+            "web/static/**/*",
             "py.typed",
         ]
     },
@@ -201,6 +202,7 @@ setup(
     extras_require={
         "data": ["pandas>=2.2,<4", "pyarrow>=18"],  # tables and Parquet of recordings
         "foxglove": ["foxglove-sdk>=0.30,<0.31"],  # live stream
+        "web": ["aiohttp>=3.11,<4", "argon2-cffi>=23.1,<26"],  # pages for browsers, hashes of passwords
         "sweep": ["dask[distributed]>=2025.2", "optuna>=4.2,<6", "pyarrow>=18"],
     },
     entry_points={"console_scripts": console_scripts()},

@@ -18,7 +18,8 @@ from cnc_ptp.commands.completion import (
     complete_word,
 )
 from cnc_ptp.commands.console import print_error
-from cnc_ptp.commands.run.web_options import web_options
+from cnc_ptp.commands.run.web_options import web_options, web_port_option
+from cnc_ptp.commands.run.web_users import web_users
 from cnc_ptp.errors import WRONG_INPUT, CncError
 from cnc_ptp.number_range import DURATION, PERCENT, POSITIVE, RATE, STATES_PER_SECOND
 from cnc_ptp.ros_arguments import client_namespace_option, namespace_option, ros_arguments
@@ -139,6 +140,7 @@ def simulate_command(**options: Any) -> None:
     metavar="[PORT]",
     help="Stream the messages of a recording to Foxglove at ws://localhost:PORT; without PORT 8765.",
 )
+@web_port_option
 @click.option("--free-run", is_flag=True, help="As fast as all nodes follow, instead of in real time.")
 @click.option("--composed", is_flag=True, help="All nodes in one process.")
 @namespace_option
@@ -321,13 +323,16 @@ def watch_command(machine: str | None, **options: Any) -> None:
 @web_options
 @client_namespace_option
 def web_command(**options: Any) -> None:
-    """Serve the pages of the running machine to browsers.
+    """Serve pages of the running machine, or of a RECORDING, to browsers.
 
     On this computer alone, at http://localhost:8080.
     """
     from cnc_ptp.commands.run.web import web
 
     sys.exit(web(**options))
+
+
+main.add_command(web_users)
 
 
 @main.command("explain")

@@ -63,6 +63,14 @@ class Face(ABC):
     def jog(self, axis: str, velocity: float, *, user: str) -> None:
         """One message of a jog (mm/s, deg/s; 0 ends it); the axis stops 0.2 s after the last one."""
 
+    def text_of(self, path: str) -> str | None:
+        """Of a program that was loaded, where the machine does not take it from a file."""
+        return None
+
+    @abstractmethod
+    def note(self, cycle: int, text: str) -> None:
+        """An event for recordings: who has done what."""
+
     @abstractmethod
     async def run(self) -> None:
         """Keeps the face going until the machine is gone. Raises CncError 26171 then."""

@@ -5,8 +5,9 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import json
+import traceback
 from collections.abc import Callable, Mapping
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from typing import Any
 
 from cnc_ptp.client.faults import GONE
@@ -21,6 +22,7 @@ from cnc_ptp.web.program_watch import ProgramWatch
 from cnc_ptp.web.programs import ProgramFolder
 from cnc_ptp.web.protocol import VERSION, difference, error_fields
 from cnc_ptp.web.session import Session
+from cnc_ptp.web.tasks import Tasks
 
 PERIOD = 0.04
 """Seconds between two states: 25 a second, so that it is more than 20 on a busy computer too."""
@@ -32,13 +34,17 @@ WAITING = CncError(NO_MACHINE_YET, "no machine runs", "the page is filled as soo
 class Hub:
     """Keeps the face of a machine, looks for it again when it is gone, and tells the sessions what has come."""
 
-    def __init__(self, connect: Callable[[], Face], *, folder: ProgramFolder, name: str = "") -> None:
+    def __init__(
+        self, connect: Callable[[], Face], *, folder: ProgramFolder, name: str = "", machine_file: str | None = None
+    ) -> None:
         """`connect` may block; it raises CncError while there is no machine. `name`: what pages call the machine."""
         self._connect = connect
         self._name = name
         self.folder = folder
         self.programs = ProgramWatch(folder)
         self.office = DrawingOffice()
+        self.tasks = Tasks(machine_file)
+        self._kept: set[asyncio.Task[None]] = set()
         self.face: Face | None = None
         self.sessions: list[Session] = []
         self.right = CommandRight()
@@ -65,6 +71,7 @@ class Hub:
             with contextlib.suppress(asyncio.CancelledError):
                 await self._task
         self.office.close()
+        self.tasks.close()
         if self.face is not None:
             await asyncio.to_thread(self.face.close)
             self.face = None
@@ -83,6 +90,7 @@ class Hub:
         self.face, self._state, self.alarms = face, {}, Alarms()
         self.handshakes.clear()
         self.programs.forget()
+        self.programs.text_of = face.text_of
         for session in self.sessions:
             session.send({"type": "back"})
             session.send(self.hello(session))
@@ -94,6 +102,10 @@ class Hub:
             running.result()
         except CncError as error:
             self._tell_gone(error)
+            await asyncio.to_thread(face.close)
+        except Exception as error:  # a mistake of ours must not leave pages that show the past
+            traceback.print_exc()
+            self._tell_gone(CncError(GONE, f"the server has failed: {error!r}", "the machine continues"))
             await asyncio.to_thread(face.close)
         finally:
             running.cancel()
@@ -186,6 +198,11 @@ class Hub:
         if self.right.leave(session):
             self.tell_operator()
 
+    def keep(self, task: asyncio.Task[None]) -> None:
+        """Until its end."""
+        self._kept.add(task)
+        task.add_done_callback(self._kept.discard)
+
     def require_face(self) -> Face:
         """Raises CncError 26171 or 26244 while there is no machine."""
         if self.face is None:
@@ -195,4 +212,4 @@ class Hub:
 
 
 def request_fields(request: HandshakeRequest) -> dict[str, Any]:
-    return {name: getattr(request, name) for name in HandshakeRequest.__slots__}
+    return {each.name: getattr(request, each.name) for each in fields(HandshakeRequest)}

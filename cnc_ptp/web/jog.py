@@ -57,6 +57,7 @@ class Jogs:
         press = self._held.get(axis)
         if sequence == 1 and not is_late:
             self._held[axis] = Press(1, self._now())
+            self._note(axis, f"jog with {velocity:g} begins")
         elif press is None:
             return
         elif is_late or sequence <= press.sequence or self._now() - press.heard > PATIENCE:
@@ -103,3 +104,9 @@ class Jogs:
         face = self._session.hub.face
         if self._held.pop(axis, None) is not None and face is not None:
             face.jog(axis, 0.0, user=self._session.user)
+            self._note(axis, "jog ends")
+
+    def _note(self, axis: str, what: str) -> None:
+        """For the recording: who jogs."""
+        face = self._session.hub.require_face()
+        face.note(round(face.time / face.cycle_time), f"{self._session.user}: axis {axis}: {what}")

@@ -10,6 +10,7 @@ from functools import partial
 from math import inf
 from typing import Any
 
+from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rclpy.publisher import Publisher
 
@@ -17,12 +18,13 @@ from cnc_ptp import msg
 from cnc_ptp.client import Machine
 from cnc_ptp.client.graph_link import GraphLink, connect_graph
 from cnc_ptp.client.link import Reply
+from cnc_ptp.nodes import convert
 from cnc_ptp.nodes.client.calls_in_flight import CallsInFlight
 from cnc_ptp.nodes.client.machine_client import MachineClient, services_of
-from cnc_ptp.nodes.topics import DIAGNOSTICS, EVENTS, LATEST, PLC_INPUT, jog_topic, program_topic
-from cnc_ptp.protocol.blocks import read_values
+from cnc_ptp.nodes.topics import DIAGNOSTICS, EVENT, EVENTS, LATEST, PLC_INPUT, jog_topic, program_topic
+from cnc_ptp.protocol.blocks import Event, Severity, read_values
 from cnc_ptp.web.face import News
-from cnc_ptp.web.machine_face import MachineFace, taken
+from cnc_ptp.web.machine_face import SOURCE, MachineFace, taken
 
 NODE = "web"
 MOST_DIAGNOSTICS = 100
@@ -51,6 +53,7 @@ class WebLink(GraphLink):
 
     def _subscribe(self, client: MachineClient) -> None:
         super()._subscribe(client)
+        self._event_publisher = client.create_publisher(msg.Event, EVENT, EVENTS)
         client.create_subscription(DiagnosticArray, DIAGNOSTICS, self._take_diagnostics, PLC_INPUT)
         for unit, kind in self.kinds.items():
             if kind == "channel":
@@ -99,6 +102,10 @@ class WebLink(GraphLink):
         message.header.frame_id = client
         self._jog_publishers[axis].publish(message)
 
+    def publish_event(self, event: Event) -> None:
+        """For recordings and other clients; its stamp is that of its cycle there."""
+        self._event_publisher.publish(convert.event_to_message(event, Time()))
+
     def require_machine(self) -> None:
         """Raises CncError 26171 when it is gone."""
         self._require_machine()
@@ -123,6 +130,9 @@ class LiveFace(MachineFace):
         response = await asyncio.wrap_future(self._graph.call(unit, command, arguments))
         number = 0 if response.accepted else response.error_id
         return Reply(response.cycle, number, response.message, read_values(response.values_json), response.job)
+
+    def note(self, cycle: int, text: str) -> None:
+        self._graph.publish_event(Event(cycle, SOURCE, Severity.INFO, 0, text))
 
     def jog(self, axis: str, velocity: float, *, user: str) -> None:
         self._graph.jog(axis, velocity, NODE if user == NODE else f"{NODE}:{user}")

@@ -61,7 +61,7 @@ class Logins:
     def has_ended(self, login: Login) -> bool:
         if login.has_logged_out:
             return True
-        return self._now() - login.used > self._idle_time or self._now() - login.begin > LONGEST_TIME
+        return self._now() - login.used >= self._idle_time or self._now() - login.begin >= LONGEST_TIME
 
     def of_machine(self, user: str, role: str) -> Login:
         """One that is not remembered."""

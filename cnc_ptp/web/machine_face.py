@@ -20,6 +20,9 @@ from cnc_ptp.web.face import Face, News, State
 from cnc_ptp.web.scope import signals_of
 from cnc_ptp.web.unit_fields import unit_states
 
+SOURCE = "web"
+"""Of events that say who has given a command."""
+
 
 class MachineFace(Face):
     """What the graph and an offline machine have in common: their link."""
@@ -72,9 +75,14 @@ class MachineFace(Face):
         given = self._machine[unit]._prepared(command, dict(arguments))
         async with self._turns[unit]:
             reply = await self._answer_to(unit, command, given, user)
+        self.note(reply.cycle, who_text(user, self.kinds[unit], unit, command, reply.error_id))
         if reply.error_id:
             raise error_of(reply.error_id, reply.message, reply.values)
         return reply
+
+    def note(self, cycle: int, text: str) -> None:
+        """An event of this process, for recordings: who has done what."""
+        self._link.seen.take_event(Event(cycle, SOURCE, Severity.INFO, 0, text))
 
     async def _answer_to(self, unit: str, command: str, arguments: Mapping[str, Any], user: str) -> Reply:
         ticket = self._link.give(unit, command, arguments)
@@ -84,6 +92,12 @@ class MachineFace(Face):
 
     def close(self) -> None:
         self._machine.close()
+
+
+def who_text(user: str, kind: str, unit: str, command: str, error_id: int) -> str:
+    """Who has given the command of the record with the same cycle, unit and name."""
+    end = f"refused with P-ERR-{error_id}" if error_id else "carried out"
+    return f"{user}: {kind} {unit}: {command}, {end}"
 
 
 def taken(items: Any) -> list[Any]:

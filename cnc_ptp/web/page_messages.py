@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 from cnc_ptp.client.faults import unknown_unit
 from cnc_ptp.errors import CncError, nearest_name
+from cnc_ptp.web.commissioning_messages import CommissioningMessages
 from cnc_ptp.web.jog import Jogs
-from cnc_ptp.web.numbers import BAD_MESSAGE
+from cnc_ptp.web.numbers import A_RECORDING, BAD_MESSAGE
 from cnc_ptp.web.protocol import NOTHING, Message, answer, field
+from cnc_ptp.web.recorded_face import RecordedFace
 from cnc_ptp.web.rights import is_stop, require_page_command, require_role, role_for
 from cnc_ptp.web.scope import Stream, read_signals
 
@@ -38,7 +40,10 @@ class PageMessages:
             "load": self._load,
             "scope": self._scope,
             "scope_stop": self._scope_stop,
+            "seek": self._seek,
+            "play": self._play,
             "ping": self._ping,
+            **CommissioningMessages(session).handlers,
         }
 
     def handle(self, message: Message) -> Answering | None:
@@ -113,6 +118,26 @@ class PageMessages:
     def _scope_stop(self, message: Message) -> None:
         self._session.scope = None
         self._session.send(answer(message))
+
+    # recordings
+
+    def _seek(self, message: Message) -> Answering:
+        return self._sought(message, self._recording(message), field(message, "time", "number"))
+
+    async def _sought(self, message: Message, face: RecordedFace, time: float) -> Message:
+        await face.seek(time)
+        return answer(message, time=face.time)
+
+    def _play(self, message: Message) -> None:
+        self._recording(message).play(field(message, "speed", "number"))
+        self._session.send(answer(message))
+
+    def _recording(self, message: Message) -> RecordedFace:
+        """Raises CncError 26248 for a machine that runs."""
+        face = self._hub.require_face()
+        if not isinstance(face, RecordedFace):
+            raise CncError(A_RECORDING, f"{message['type']}: this machine runs, it is no recording", NOTHING)
+        return face
 
     # the command right
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +19,8 @@ class ProgramWatch:
         self._folder = folder
         self.loaded: dict[str, str] = {}
         """Channel -> path."""
+        self.text_of: Callable[[str], str | None] = lambda path: None
+        """Of a program that the machine has told of itself."""
         self._given: dict[str, str] = {}
         """Path -> text that a page has sent in place of a file."""
 
@@ -46,7 +48,7 @@ class ProgramWatch:
         """Of a loaded program, wherever it is, or of one of the folder. Raises CncError 26240, 26242, 26110."""
         for path in self.loaded.values():
             if Path(path).name == name:
-                return self._given[path] if path in self._given else read_file("program", path)
+                return self._text(path)
         return self._folder.text(name)
 
     def loaded_text(self, channel: str) -> tuple[str, str]:
@@ -54,4 +56,8 @@ class ProgramWatch:
         path = self.loaded.get(channel)
         if path is None:
             raise CncError(NO_PROGRAM, f"channel {channel} has no program", "nothing was read")
-        return path, self._given[path] if path in self._given else read_file("program", path)
+        return path, self._text(path)
+
+    def _text(self, path: str) -> str:
+        told = self._given.get(path, self.text_of(path))
+        return read_file("program", path) if told is None else told

@@ -10,6 +10,7 @@ from aiohttp import WSCloseCode, WSMsgType, web
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.web.access import COOKIE, Access
+from cnc_ptp.web.data_routes import DataRoutes
 from cnc_ptp.web.guard import Names, make_guard
 from cnc_ptp.web.hub import Hub
 from cnc_ptp.web.logins import Login
@@ -43,6 +44,7 @@ class Server:
         self.app.router.add_get("/ws", self._socket)
         self.app.router.add_static("/static", STATIC)
         ProgramRoutes(hub, access).add_to(self.app)
+        DataRoutes(hub, access).add_to(self.app)
 
     async def _begin(self, _app: web.Application) -> None:
         self.hub.begin()

@@ -105,15 +105,17 @@ class Site:
 
 
 @asynccontextmanager
-async def site(machine=MILL, *, connect=None, users=None, programs=EXAMPLES):
+async def site(machine=MILL, *, connect=None, users=None, programs=EXAMPLES, waits=True):
     """`connect` gives the face; the one of an offline machine without it."""
-    hub = Hub(connect or (lambda: offline_face(machine)), name="mill", folder=ProgramFolder(programs))
+    hub = Hub(
+        connect or (lambda: offline_face(machine)), name="mill", folder=ProgramFolder(programs), machine_file=machine
+    )
     access = Access(None if users is None else Users(str(users)))
     server = Server(hub, access, Names())
     client = TestClient(TestServer(server.app))
     await client.start_server()
     try:
-        while connect is None and hub.face is None:
+        while hub.face is None and waits:
             await asyncio.sleep(0.01)
         yield Site(hub, access, client)
     finally:

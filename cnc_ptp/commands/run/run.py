@@ -7,6 +7,7 @@ from rich.console import Console
 from cnc_ptp import KERNEL
 from cnc_ptp.channel.program_report import cut_off_notes, time_lines
 from cnc_ptp.commands.console import RUN_FAILED, print_faults, print_missing_folders, print_note_of_idle_run
+from cnc_ptp.commands.run.beside_run import RunFiles, WebBesideRun
 from cnc_ptp.commands.run.progress import RunProgress
 from cnc_ptp.machine.plc_file import check_plc
 from cnc_ptp.machine.run_entries import read_entries
@@ -38,12 +39,13 @@ def run(
     plc: str | None = None,
     recorder: RecorderOptions | None = None,
     foxglove: int | None = None,
+    web: int | None = None,
 ) -> int:
     """Runs the graph; prints a summary. Status 1 when a unit ended in error, a node died or the disk was full.
 
     `recorder`: None = without one.
     `stay`: until Ctrl-C, which is no error when everything is at a standstill. `strict`: status 1 also when a
-    command was refused.
+    command was refused. `web`: port of its pages, None = no pages.
     """
     check_recording(record, machine_file=machine, NC_program=program, scenario=scenario, PLC_file=plc)
     parameters = read_machine(machine)
@@ -67,9 +69,11 @@ def run(
         recorder=recorder,
         foxglove=foxglove,
     )
-    with RunProgress() as progress:
+    with WebBesideRun(web, RunFiles(machine, program)) as pages, RunProgress() as progress:
 
         def show(monitor: RunMonitor) -> None:
+            if monitor.cycle:
+                pages.begin()
             progress.tell(monitor.notes)
             if progress.due:
                 progress.show(monitor.views())

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import asyncio
 import os
+import socket
+from collections.abc import Callable
 
 from cnc_ptp.ros_arguments import ros_arguments
+from cnc_ptp.web.face import Face
+from cnc_ptp.web.options import WebOptions, listen, require_packages
 from cnc_ptp.web.security import require_secured
-from cnc_ptp.web.serve import WebOptions, listen, require_packages, serve
+from cnc_ptp.web.serve import serve
 
 NICENESS = 5
 """Below the nodes of a machine."""
@@ -21,18 +25,34 @@ def web(
     certificate: str | None,
     key: str | None,
     users: str | None,
+    machine: str | None = None,
+    listening: int | None = None,
+    recording: str | None = None,
 ) -> int:
-    """Serves the pages of the machine that runs, until Ctrl-C."""
+    """Serves the pages of the machine that runs, or of a recording, until Ctrl-C.
+
+    `machine`: its file, beside which pages may write others; `listening`: descriptor of a socket that has the port.
+    """
     require_packages()
     require_secured(host, certificate, key, users)
-    options = WebOptions(port, host, names, programs, certificate, key, users)
-    listening = listen(host, port)
+    options = WebOptions(port, host, names, programs, certificate, key, users, machine)
+    taken = listen(host, port) if listening is None else socket.socket(fileno=listening)
     os.nice(NICENESS)
+    asyncio.run(serve(connector(recording), options, taken, tell=print_address))
+    return 0
+
+
+def connector(recording: str | None) -> Callable[[], Face]:
+    """Gives the face of the machine. Raises CncError 26001 … for a recording that cannot be read."""
+    if recording is not None:
+        from cnc_ptp.web.recorded_face import RecordedFace
+
+        face = RecordedFace(recording)
+        return lambda: face
     from cnc_ptp.web.live_face import live_face
 
     namespace = ros_arguments().namespace
-    asyncio.run(serve(lambda: live_face(namespace=namespace), options, listening, tell=print_address))
-    return 0
+    return lambda: live_face(namespace=namespace)
 
 
 def print_address(address: str) -> None:

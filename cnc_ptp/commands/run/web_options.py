@@ -7,12 +7,25 @@ from typing import Any
 
 import click
 
-from cnc_ptp.web.serve import DEFAULT_PORT, HOST
+from cnc_ptp.web.options import DEFAULT_PORT, HOST
+
+web_port_option = click.option(
+    "--web",
+    type=click.IntRange(1, 65535),
+    is_flag=False,
+    flag_value=DEFAULT_PORT,
+    metavar="[PORT]",
+    help=f"Pages of the machine for browsers at http://localhost:PORT; without PORT {DEFAULT_PORT}.",
+)
+"""Of `cnc_ptp run`."""
 
 
 def web_options(function: Callable[..., Any]) -> Callable[..., Any]:
     """Options of `cnc_ptp web`."""
     for option in (
+        click.argument("recording", required=False, type=click.Path()),
+        click.option("--listening", type=int, hidden=True, help="Descriptor of a socket that listens already."),
+        click.option("--machine", type=click.Path(dir_okay=False), help="Machine file of the running machine."),
         click.option("--users", type=click.Path(dir_okay=False), help="File of users; without it there is no login."),
         click.option("--tls-key", "key", type=click.Path(dir_okay=False), help="Its private key, PEM."),
         click.option("--tls-cert", "certificate", type=click.Path(dir_okay=False), help="Certificate for TLS, PEM."),

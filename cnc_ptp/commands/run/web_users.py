@@ -1,0 +1,68 @@
+"""`cnc_ptp web-users`: who may log in to the pages, and tokens of machines."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from cnc_ptp.web.options import require_packages
+
+ROLES = ("viewer", "operator", "commissioner")
+FILE = click.option(
+    "--users", "file", type=click.Path(dir_okay=False), required=True, help="File of users; made if it is not there."
+)
+ROLE = click.option("--role", type=click.Choice(ROLES), required=True, help="What may be done.")
+NAME = click.argument("name")
+
+
+@click.group("web-users")
+def web_users() -> None:
+    """Users of the pages: add, remove, list; tokens of machines."""
+    require_packages()
+
+
+@web_users.command("add")
+@NAME
+@FILE
+@ROLE
+@click.password_option(help="Asked for when it is not given.")
+def add(name: str, file: str, role: str, password: str) -> None:
+    """Add a user, or give one another role and password."""
+    from cnc_ptp.web.users import add_user
+
+    add_user(Path(file), name, role, password)
+    print(f"{name} is {role}")
+
+
+@web_users.command("token")
+@NAME
+@FILE
+@ROLE
+def token(name: str, file: str, role: str) -> None:
+    """Make a token for a machine, which sends it as `Authorization: Bearer TOKEN`. It is shown once."""
+    from cnc_ptp.web.users import add_token
+
+    print(add_token(Path(file), name, role))
+
+
+@web_users.command("remove")
+@NAME
+@FILE
+def remove(name: str, file: str) -> None:
+    """Remove a user or a token; open pages of it end."""
+    from cnc_ptp.web.users import remove as remove_entry
+
+    remove_entry(Path(file), name)
+    print(f"{name} is removed")
+
+
+@web_users.command("list")
+@FILE
+def list_users(file: str) -> None:
+    """List users and tokens with their roles."""
+    from cnc_ptp.web.users import read_users
+
+    for kind, entries in read_users(Path(file)).items():
+        for user in entries.values():
+            print(f"{kind.removesuffix('s'):6} {user.role:13} {user.name}")

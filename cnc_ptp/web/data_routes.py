@@ -1,0 +1,90 @@
+"""Parameters and recorded samples over HTTP."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterator
+from typing import Any
+
+from aiohttp import web
+
+from cnc_ptp.client.faults import unknown_unit
+from cnc_ptp.errors import CncError
+from cnc_ptp.parameters import ParameterSet, ros_descriptors
+from cnc_ptp.parameters.declare.declarations import catalogue
+from cnc_ptp.web.access import Access
+from cnc_ptp.web.hub import Hub
+from cnc_ptp.web.numbers import A_RECORDING, BAD_MESSAGE
+from cnc_ptp.web.protocol import NOTHING, frame
+from cnc_ptp.web.recorded_face import RecordedFace
+from cnc_ptp.web.scope import read_signals
+
+NOT_STORED = {"Cache-Control": "no-store"}
+
+
+class DataRoutes:
+    """/api/parameters, /api/recorded"""
+
+    def __init__(self, hub: Hub, access: Access) -> None:
+        self._hub, self._access = hub, access
+
+    def add_to(self, app: web.Application) -> None:
+        app.router.add_get("/api/parameters", self._parameters)
+        app.router.add_get("/api/recorded", self._recorded)
+
+    async def _parameters(self, request: web.Request) -> web.StreamResponse:
+        """`?unit=x`: all its parameters, as the machine file has them."""
+        self._access.login_of(request)
+        face, unit = self._hub.require_face(), request.query.get("unit", "")
+        if unit not in face.sets:
+            raise unknown_unit(unit, face.sets)
+        listed = await asyncio.to_thread(lambda: [*described(face.sets[unit])])
+        text = frame({"unit": unit, "parameters": listed})
+        response = web.Response(text=text, content_type="application/json", headers=NOT_STORED)
+        response.enable_compression()
+        return response
+
+    async def _recorded(self, request: web.Request) -> web.StreamResponse:
+        """`?signals=x.set_position,…&from=s&to=s&points=N`: a frame as of the scope."""
+        self._access.login_of(request)
+        face, query = self._hub.require_face(), request.query
+        if not isinstance(face, RecordedFace):
+            raise CncError(A_RECORDING, "recorded samples: this machine runs", f"{NOTHING}; use the scope")
+        signals = read_signals(query.get("signals", "").split(","), face.kinds)
+        begin, end = number(query.get("from", "0")), number(query.get("to", str(face.end)))
+        points = int(number(query.get("points", "10000")))
+        data = await asyncio.to_thread(face.samples, signals, begin, end, max(1, points))
+        return web.Response(body=data, content_type="application/octet-stream", headers=NOT_STORED)
+
+
+def number(text: str) -> float:
+    """Raises CncError 26233."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = float("nan")
+    if not -1e12 < value < 1e12:
+        raise CncError(BAD_MESSAGE, f"'{text[:40]}' is no number", NOTHING)
+    return value
+
+
+def described(parameters: ParameterSet) -> Iterator[dict[str, Any]]:
+    """Every parameter of a unit: id, name, value, unit, range, text, and when a new value takes effect."""
+    declarations = catalogue().by_id
+    for each in ros_descriptors(parameters):
+        declaration = declarations[each.number]
+        yield {
+            "id": each.number,
+            "name": each.ros_name,
+            "value": [*each.value] if isinstance(each.value, tuple) else each.value,
+            "default": [*declaration.default] if isinstance(declaration.default, tuple) else declaration.default,
+            "given": each.ros_name in parameters.given,
+            "type": each.type,
+            "unit": each.unit,
+            "min": each.minimum,
+            "max": each.maximum,
+            "range": each.constraints,
+            "text": each.text,
+            "topic": declaration.topic,
+            "change": declaration.change_for(parameters.axis_type) or "start",
+        }

@@ -1,0 +1,129 @@
+"""Commissioning that takes a while: a command of cnc_ptp in its own process, on the machine file alone."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+import sys
+import tempfile
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from cnc_ptp.client.faults import unknown_unit
+from cnc_ptp.errors import CncError
+from cnc_ptp.web.changed_machine import write_changed
+from cnc_ptp.web.numbers import BAD_MESSAGE, NOT_IDENTIFIED
+from cnc_ptp.web.protocol import NOTHING, Message, error_fields, field
+
+NICENESS = 10
+MOST_TEXT = 1 << 20
+KEPT = 10
+"""Results that can still be accepted."""
+IDENTIFIED = ("friction", "dynamics")
+Tell = Callable[[Mapping[str, Any]], None]
+
+
+class Tasks:
+    """Tasks of all pages, one at a time: they need a processor."""
+
+    def __init__(self, machine_file: str | None) -> None:
+        """`machine_file` of the machine that runs; None: it is not known, and nothing can be identified."""
+        self._file = machine_file
+        self._last = 0
+        self._running: dict[int, asyncio.subprocess.Process] = {}
+        self._results: dict[int, str] = {}
+
+    @property
+    def machine_file(self) -> str:
+        """Raises CncError 26256."""
+        if self._file is None:
+            reason = "the server does not know the machine file"
+            raise CncError(NOT_IDENTIFIED, reason, f"{NOTHING}; start it with --machine FILE")
+        return self._file
+
+    def identify(self, message: Message, axes: list[str]) -> list[str]:
+        """The words of the command. Raises CncError 26111, 26233, 26256."""
+        axis, what = field(message, "axis", "text"), field(message, "what", "text")
+        if axis not in axes:
+            raise unknown_unit(axis, axes, "axis")
+        if what not in IDENTIFIED:
+            raise CncError(BAD_MESSAGE, f"identify: what = '{what[:40]}' is not {' or '.join(IDENTIFIED)}", NOTHING)
+        return ["identify", what, axis, "--machine", self.machine_file]
+
+    def circle(self, message: Message) -> list[str]:
+        """The words of the command. Raises CncError 26233, 26256."""
+        radius, feed = field(message, "radius", "number"), field(message, "feed", "number")
+        plane = field(message, "plane", "text", "XY")
+        if plane not in ("XY", "ZX", "YZ"):
+            raise CncError(BAD_MESSAGE, f"circle: plane = '{plane[:40]}' is not XY, ZX or YZ", NOTHING)
+        words = ["circle", self.machine_file, "--radius", str(float(radius)), "--feed", str(float(feed))]
+        words += ["--plane", plane]
+        words += ["--feedforward"] if field(message, "feedforward", "switch", False) else []
+        return words
+
+    def begin(self, words: list[str], tell: Tell) -> tuple[int, asyncio.Task[None]]:
+        """Its number, and what waits for its end. Raises CncError 26256 while another one runs."""
+        if self._running:
+            raise CncError(NOT_IDENTIFIED, "another task runs", f"{NOTHING}; wait for its end, or cancel it")
+        self._last += 1
+        return self._last, asyncio.create_task(self._run(self._last, words, tell))
+
+    async def _run(self, number: int, words: list[str], tell: Tell) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            output = Path(folder) / ("circle.svg" if words[0] == "circle" else "values.yaml")
+            command = [sys.executable, "-m", "cnc_ptp", *words, "-o", str(output)]
+            process = await asyncio.create_subprocess_exec(
+                *command,
+                stdin=asyncio.subprocess.DEVNULL,
+                stdout=asyncio.subprocess.PIPE,
+                stderr=asyncio.subprocess.STDOUT,
+                preexec_fn=be_nice,
+            )
+            self._running[number] = process
+            assert process.stdout is not None
+            tell({"type": "progress", "task": number, "text": f"{' '.join(words[:3])} runs"})
+            try:
+                text = (await process.stdout.read(MOST_TEXT)).decode(errors="replace")
+                status = await process.wait()
+            finally:
+                del self._running[number]
+                with contextlib.suppress(ProcessLookupError):
+                    process.kill()
+            found = output.read_text(encoding="utf-8") if output.exists() else ""
+        if status or not found:
+            error = CncError(NOT_IDENTIFIED, f"task {number} has ended with status {status}", "nothing was found")
+            tell({"type": "result", "task": number, "ok": False, "output": text, **error_fields(error)})
+            return
+        kind = "picture" if words[0] == "circle" else "values"
+        if kind == "values":
+            self._results[number] = found
+            while len(self._results) > KEPT:
+                del self._results[next(iter(self._results))]
+        tell({"type": "result", "task": number, "ok": True, "output": text, kind: found})
+
+    def cancel(self, number: int) -> None:
+        """Raises CncError 26256 for a task that does not run."""
+        process = self._running.get(number)
+        if process is None:
+            raise CncError(NOT_IDENTIFIED, f"task {number} does not run", NOTHING)
+        process.terminate()
+
+    def accept(self, number: int, name: str) -> str:
+        """Writes a machine file with the result beside that of the machine; its path.
+
+        Raises CncError 26254, 26256, ParameterError.
+        """
+        if number not in self._results:
+            raise CncError(NOT_IDENTIFIED, f"task {number} has no result", NOTHING)
+        return str(write_changed(Path(self.machine_file), self._results[number], name))
+
+    def close(self) -> None:
+        for process in self._running.values():
+            with contextlib.suppress(ProcessLookupError):
+                process.terminate()
+
+
+def be_nice() -> None:
+    os.nice(NICENESS)

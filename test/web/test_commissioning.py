@@ -1,0 +1,52 @@
+"""Identification from a page: the result becomes a new machine file, beside the old one."""
+
+import asyncio
+import shutil
+
+import pytest
+from web_support import MILL, site
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.parameters import read_machine
+from cnc_ptp.web.changed_machine import write_changed
+
+VALUES = "/x:\n  ros__parameters:\n    lr_param: {frict_comp: 0}\n"
+
+
+@pytest.fixture
+def machine(tmp_path):
+    return shutil.copy(MILL, tmp_path / "mill.yaml")
+
+
+def test_an_axis_is_identified_and_accepted(machine, tmp_path):
+    async def story():
+        async with site(machine) as here:
+            page = await here.page()
+            answer = await page.ask("identify", axis="x", what="friction")
+            assert answer["ok"], answer
+            result = await page.wait_for("result")
+            assert result["ok"] and "frict_comp" in result["values"], result
+            accepted = await page.ask("accept", task=answer["task"], file="identified.yaml")
+            assert accepted["file"] == str(tmp_path / "identified.yaml")
+            assert read_machine(accepted["file"]).axes["x"].name == "x"
+            again = await page.ask("accept", task=answer["task"], file="identified.yaml")
+            text = "identified.yaml is there already; nothing was written; give another name"
+            assert (again["number"], again["text"]) == (26254, text)
+
+    asyncio.run(story())
+
+
+@pytest.mark.parametrize("name", ["../other.yaml", "mill.txt", ".hidden.yaml", "a/b.yaml"])
+def test_a_name_beside_nothing(machine, tmp_path, name):
+    with pytest.raises(CncError) as refused:
+        write_changed(tmp_path / "mill.yaml", VALUES, name)
+    text = f"'{name}' is no name of a machine file: letters, digits, _ . - and .yaml; nothing was written"
+    assert (refused.value.number, refused.value.message) == (26254, text)
+
+
+def test_the_machine_file_itself_is_never_written(machine, tmp_path):
+    before = (tmp_path / "mill.yaml").read_text()
+    with pytest.raises(CncError) as refused:
+        write_changed(tmp_path / "mill.yaml", VALUES, "mill.yaml")
+    assert refused.value.message == "mill.yaml is there already; nothing was written; give another name"
+    assert (tmp_path / "mill.yaml").read_text() == before

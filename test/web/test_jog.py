@@ -1,0 +1,153 @@
+"""A jog ends with its key, its page, its socket; nothing of the past starts one again."""
+
+import asyncio
+from types import SimpleNamespace
+
+import pytest
+from web_support import MILL, site
+
+from cnc_ptp.web.jog import Jogs
+from cnc_ptp.web.machine_face import offline_face
+
+MOST_CYCLES = 250
+"""From the key that comes up, or the last message, to the beginning of the stop: 250 ms."""
+TIMES = 100
+
+
+async def jogging(here, page, *, velocity=20.0):
+    """The axis turns at the velocity of a key that is held; its time passes here alone."""
+    face = here.hub.face
+    for sequence in range(1, 20):
+        await page.send(
+            type="jog", axis="x", velocity=velocity, sequence=sequence, time=asyncio.get_running_loop().time() * 1e3
+        )
+        await page.ask("ping")
+        for _ in range(5):
+            face.step()
+        if velocity_of(face) == velocity:
+            return
+    raise AssertionError("no jog")
+
+
+def velocity_of(face):
+    return face._link.seen.blocks["x"].set_velocity[-1]
+
+
+def cycles_to_stop(face, velocity=20.0):
+    """Cycles until the velocity falls."""
+    begin = face._link.seen.cycle
+    while True:
+        face.step()
+        block = face._link.seen.blocks["x"]
+        slower = [n for n, value in enumerate(block.set_velocity) if abs(value) < velocity]
+        if slower:
+            return block.first_cycle + slower[0] - begin
+
+
+def standing_site():
+    return site(connect=lambda: offline_face(MILL, stands=True))
+
+
+@pytest.mark.parametrize("phase", range(0, TIMES, 10))
+def test_the_page_is_killed_and_the_axis_stops(phase):
+    """Ten of a hundred times in each case, at another place of the jog."""
+
+    async def story():
+        async with standing_site() as here:
+            for number in range(phase, phase + 10):
+                page = await here.page()
+                await jogging(here, page)
+                for _ in range(number % 7):
+                    here.hub.face.step()
+                page.socket._response.connection.transport.abort()  # as of a process that is killed
+                while here.hub.sessions:
+                    await asyncio.sleep(0)
+                assert cycles_to_stop(here.hub.face) <= 20
+                while velocity_of(here.hub.face):
+                    here.hub.face.step()
+
+    asyncio.run(story())
+
+
+def test_the_socket_stalls_and_the_axis_stops():
+    async def story():
+        async with standing_site() as here:
+            page = await here.page()
+            for number in range(TIMES):
+                await jogging(here, page, velocity=(-20.0, 20.0)[number % 2])
+                for _ in range(number % 4):
+                    here.hub.face.step()
+                assert cycles_to_stop(here.hub.face) <= MOST_CYCLES
+                while velocity_of(here.hub.face):
+                    here.hub.face.step()
+                await page.send(type="jog_stop", axis="x")
+
+    asyncio.run(story())
+
+
+def test_the_key_comes_up():
+    async def story():
+        async with standing_site() as here:
+            page = await here.page()
+            await jogging(here, page)
+            await page.send(type="jog_stop", axis="x")
+            await page.ask("ping")
+            assert cycles_to_stop(here.hub.face) <= 20
+
+    asyncio.run(story())
+
+
+class Heard:
+    """A session, a face and a clock."""
+
+    def __init__(self):
+        self.now = 100.0
+        self.jogs, self.told = [], []
+        face = SimpleNamespace(
+            kinds={"x": "axis"}, time=0.0, cycle_time=1e-3,
+            jog=lambda axis, velocity, user: self.jogs.append(velocity),
+            note=lambda cycle, text: None,
+        )  # fmt: skip
+        right = SimpleNamespace(require=lambda session, what: None)
+        hub = SimpleNamespace(face=face, require_face=lambda: face, right=right)
+        self.session = SimpleNamespace(hub=hub, user="anna", role="operator", send=self.told.append)
+        self.under_test = Jogs(self.session, now=lambda: self.now)
+
+    def message(self, sequence, *, sent):
+        self.under_test.take({"type": "jog", "axis": "x", "velocity": 5.0, "sequence": sequence, "time": sent * 1e3})
+
+
+def test_messages_of_the_past_start_nothing():
+    heard = Heard()
+    heard.message(1, sent=0.0)
+    heard.now += 0.05
+    heard.message(2, sent=0.05)
+    assert heard.jogs == [5.0, 5.0]
+    heard.now += 1.0  # the socket stalls, then all comes at once
+    for number in range(3, 20):
+        heard.message(number, sent=0.05 * number)
+    assert heard.jogs == [5.0, 5.0, 0.0]
+    assert [message["text"] for message in heard.told] == [
+        "axis x: the messages of the jog came too late; the axis stops; press the key again"
+    ]
+    assert heard.told[0]["number"] == 26243
+
+
+def test_a_press_of_the_past_is_none():
+    heard = Heard()
+    heard.message(1, sent=0.0)
+    heard.under_test.take_stop({"type": "jog_stop", "axis": "x"})
+    heard.now += 2.0
+    heard.message(1, sent=1.0)  # a second late
+    assert heard.jogs == [5.0, 0.0]
+
+
+def test_each_message_is_passed_on_once():
+    heard = Heard()
+    heard.message(1, sent=0.0)
+    heard.now += 0.05
+    heard.message(1, sent=0.05)  # the same number again is another press
+    heard.now += 0.05
+    heard.message(2, sent=0.1)
+    heard.message(2, sent=0.1)  # twice: something is wrong with the page
+    assert heard.jogs == [5.0, 5.0, 5.0, 0.0]

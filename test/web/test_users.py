@@ -1,0 +1,268 @@
+"""Logins: users, roles, tokens of machines, sessions that end; TLS."""
+
+import asyncio
+import os
+import ssl
+from types import SimpleNamespace
+
+import aiohttp
+import pytest
+import trustme
+from aiohttp import WSMsgType, web
+from click.testing import CliRunner
+from web_support import Page, site
+
+from cnc_ptp.cli import main
+from cnc_ptp.errors import CncError
+from cnc_ptp.web.logins import IDLE_TIME, LONGEST_TIME, Logins
+from cnc_ptp.web.rate import Rate
+from cnc_ptp.web.security import tls_context
+from cnc_ptp.web.users import Users, add_token, add_user, read_users, remove
+
+PASSWORD = "long enough"
+
+
+@pytest.fixture
+def users(tmp_path):
+    file = tmp_path / "users.yaml"
+    for name, role in (("vera", "viewer"), ("otto", "operator"), ("cora", "commissioner")):
+        add_user(file, name, role, PASSWORD)
+    return file
+
+
+def run(story, **options):
+    async def told():
+        async with site(**options) as here:
+            await story(here)
+
+    asyncio.run(told())
+
+
+async def log_in(here, user, password=PASSWORD):
+    return await here.client.post("/api/login", json={"user": user, "password": password})
+
+
+async def page_of(here, user):
+    """A page of a user, in the browser that all users of a test share."""
+    assert (await log_in(here, user)).status == 200
+    token = (await (await here.client.get("/api/session")).json())["token"]
+    page = Page(await here.client.ws_connect("/ws"))
+    await page.send(type="hello", token=token)
+    page.hello = await page.wait_for("hello")
+    return page
+
+
+def test_roles(users):
+    async def story(here):
+        vera = await page_of(here, "vera")
+        assert (vera.hello["user"], vera.hello["role"]) == ("vera", "viewer")
+        refused = await vera.ask("take_command")
+        text = "take_command: vera is viewer; it takes the role operator; nothing was done"
+        assert (refused["number"], refused["text"]) == (26235, text)
+        refused = await vera.command("x", "halt")
+        assert refused["number"] == 26235
+        otto = await page_of(here, "otto")
+        assert (await otto.ask("take_command"))["ok"]
+        refused = await otto.command("x", "write_parameter", parameter="P-AXIS-00099", value=1)
+        text = "axis x: write_parameter: otto is operator; it takes the role commissioner; nothing was done"
+        assert (refused["number"], refused["text"]) == (26235, text)
+        refused = await otto.ask("identify", axis="x", what="friction")
+        assert refused["number"] == 26235
+        assert (await otto.command("x", "move_absolute", target=1))["ok"]
+        assert ("otto", "x", "move_absolute") in here.hub.face.users
+        event = await otto.wait_for("event", lambda event: event["source"] == "web")
+        assert event["text"] == "otto: axis x: move_absolute, carried out"
+
+    run(story, users=users)
+
+
+def test_a_page_without_login(users):
+    async def story(here):
+        assert (await here.client.get("/")).status == 200
+        for path in ("/api/session", "/api/programs", "/ws", "/api/backplot", "/api/parameters"):
+            assert (await here.client.get(path)).status == 401
+
+    run(story, users=users)
+
+
+@pytest.mark.parametrize(("name", "password"), [("otto", "wrong password"), ("nobody", PASSWORD), ("otto", "")])
+def test_a_wrong_password(users, name, password):
+    async def story(here):
+        answer = await log_in(here, name, password)
+        text = "name or password is wrong; nothing was done"
+        assert (answer.status, (await answer.json())["text"]) == (401, text)
+
+    run(story, users=users)
+
+
+def test_many_attempts(users, monkeypatch):
+    async def story(here):
+        for _ in range(5):
+            assert (await log_in(here, "otto", "wrong password")).status == 401
+        answer = await log_in(here, "otto")
+        text = "too many attempts to log in; nothing was done; wait a minute"
+        assert (answer.status, (await answer.json())["number"], (await answer.json())["text"]) == (429, 26255, text)
+        assert (await log_in(here, "cora")).status == 200
+
+    monkeypatch.setattr("cnc_ptp.web.access.LOGINS_PER_SECOND", 1e-3)
+    run(story, users=users)
+
+
+def test_logging_out_ends_pages(users):
+    async def story(here):
+        page = await page_of(here, "otto")
+        token = (await (await here.client.get("/api/session")).json())["token"]
+        assert (await here.client.post("/api/logout")).status == 401
+        assert (await here.client.post("/api/logout", headers={"X-Token": token})).status == 200
+        error = await page.wait_for("error")
+        assert (error["number"], error["text"]) == (26239, "the login of otto has ended; the page is cut off; log in")
+        while not page.socket.closed:
+            await page.socket.receive()
+        assert (await here.client.get("/api/session")).status == 401
+
+    run(story, users=users)
+
+
+def test_a_user_who_is_removed(users):
+    async def story(here):
+        page = await page_of(here, "otto")
+        remove(users, "otto")
+        assert (await page.wait_for("error"))["number"] == 26239
+
+    run(story, users=users)
+
+
+def test_a_token_of_a_machine(users):
+    token = add_token(users, "cell", "operator")
+
+    async def story(here):
+        headers = {"Authorization": f"Bearer {token}"}
+        socket = await here.client.ws_connect("/ws", headers=headers)
+        page = Page(socket)
+        await page.send(type="hello", token=token)
+        hello = await page.wait_for("hello")
+        assert (hello["user"], hello["role"]) == ("cell", "operator")
+        answer = await here.client.get("/api/programs", headers={"Authorization": "Bearer guessed"})
+        assert (answer.status, (await answer.json())["text"]) == (401, "the token is not known; nothing was done")
+
+    run(story, users=users)
+
+
+def test_logins_end():
+    clock = SimpleNamespace(now=0.0)
+    logins = Logins(now=lambda: clock.now)
+    idle, busy = logins.begin("a", "viewer"), logins.begin("b", "viewer")
+    for _ in range(3):
+        clock.now += 0.6 * IDLE_TIME
+        assert logins.find(busy)
+    assert logins.find(idle) is None
+    while clock.now < LONGEST_TIME:
+        assert logins.find(busy)
+        clock.now += 0.6 * IDLE_TIME
+    assert logins.find(busy) is None
+
+
+def test_a_rate():
+    clock = SimpleNamespace(now=0.0)
+    rate = Rate(2.0, 3.0, now=lambda: clock.now)
+    assert [rate.permits() for _ in range(4)] == [True, True, True, False]
+    clock.now += 0.5
+    assert [rate.permits() for _ in range(2)] == [True, False]
+
+
+def test_the_file_has_no_password(users):
+    content = users.read_text()
+    assert PASSWORD not in content and content.count("$argon2id$") == 3
+    assert os.stat(users).st_mode & 0o077 == 0
+
+
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        ("users: [", "it is no YAML"),
+        ("- 1", "it has no users and tokens by name"),
+        ("users: [a]", "users are no names with role and hash"),
+        ("users: {a: {role: king, hash: x}}", "users: 'a' has no role (viewer, operator, commissioner) or no hash"),
+    ],
+)
+def test_a_file_that_cannot_be_used(tmp_path, content, reason):
+    file = tmp_path / "users.yaml"
+    file.write_text(content)
+    with pytest.raises(CncError) as refused:
+        Users(str(file))
+    text = f"users file {file} cannot be used: {reason}; nothing was started"
+    assert (refused.value.number, refused.value.message) == (26246, text)
+
+
+def test_a_file_that_others_may_write(users):
+    users.chmod(0o666)
+    with pytest.raises(CncError) as refused:
+        read_users(users)
+    reason = "others may write it (mode 666); make it 600"
+    assert refused.value.message == f"users file {users} cannot be used: {reason}; nothing was started"
+
+
+def test_a_file_that_is_not_there(tmp_path):
+    with pytest.raises(CncError) as refused:
+        Users(str(tmp_path / "none.yaml"))
+    text = f"users file {tmp_path}/none.yaml cannot be used: No such file or directory; nothing was started"
+    assert refused.value.message == text
+
+
+@pytest.mark.parametrize(
+    ("words", "status", "text"),
+    [
+        (["add", "anna", "--role", "operator", "--password", "short"], 2,
+         "P-ERR-26246 user anna: a password has 8 to 256 characters, not 5; nothing was changed"),
+        (["add", "a b", "--role", "operator", "--password", PASSWORD], 2,
+         "P-ERR-26246 'a b' is no name: letters, digits, _ . @ -; nothing was changed"),
+        (["add", "anna", "--role", "operator", "--password", PASSWORD], 0, "anna is operator"),
+        (["list"], 0, "user   operator      otto"),
+        (["remove", "vera"], 0, "vera is removed"),
+    ],
+)  # fmt: skip
+def test_the_command(users, words, status, text):
+    result = CliRunner().invoke(main, ["web-users", *words, "--users", str(users)])
+    assert result.exit_code == status
+    assert text in result.output.splitlines()
+
+
+def test_removing_nobody(users):
+    with pytest.raises(CncError) as refused:
+        remove(users, "oto")
+    text = f"users file {users} has no 'oto'; did you mean otto?; nothing was changed"
+    assert refused.value.message == text
+
+
+def test_tls(users, tmp_path):
+    authority = trustme.CA()
+    made = authority.issue_cert("127.0.0.1")
+    certificate, key = tmp_path / "c.pem", tmp_path / "k.pem"
+    certificate.write_bytes(b"".join(blob.bytes() for blob in made.cert_chain_pems))
+    key.write_bytes(made.private_key_pem.bytes())
+
+    async def story(here):
+        runner = web.AppRunner(here.client.server.app)
+        await runner.setup()
+        served = web.TCPSite(runner, "127.0.0.1", 0, ssl_context=tls_context(str(certificate), str(key)))
+        await served.start()
+        port = served._server.sockets[0].getsockname()[1]
+        trusted = ssl.create_default_context()
+        authority.configure_trust(trusted)
+        async with aiohttp.ClientSession(cookie_jar=aiohttp.CookieJar(unsafe=True)) as session:
+            address = f"https://127.0.0.1:{port}"
+            answer = await session.post(
+                f"{address}/api/login",
+                json={"user": "otto", "password": PASSWORD},
+                ssl=trusted,
+                headers={"Origin": address},
+            )
+            assert answer.status == 200 and "Secure" in answer.headers["Set-Cookie"]
+            token = (await (await session.get(f"{address}/api/session", ssl=trusted)).json())["token"]
+            socket = await session.ws_connect(f"{address}/ws", ssl=trusted)
+            await socket.send_json({"type": "hello", "token": token})
+            assert (await socket.receive()).type is WSMsgType.TEXT
+            await socket.close()
+        await served.stop()
+
+    run(story, users=users)
