@@ -154,7 +154,7 @@ class Fake:
         step = max(1, round((end - begin) * 1000 / 2000))
         cycles = np.arange(round(begin * 1000), round(end * 1000), step)
         columns = np.concatenate([self.column(name, cycles) for name in names]).astype("<f4")
-        return web.Response(body=struct.pack("<6I", 0, step, int(cycles[0]), 0, len(names), len(cycles)) + columns.tobytes())
+        return web.Response(body=struct.pack("<5I", step, int(cycles[0]), 0, len(names), len(cycles)) + columns.tobytes())
 
     # the socket
 

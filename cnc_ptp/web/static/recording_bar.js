@@ -1,65 +1,60 @@
-// The time of a recording: where it is shown, and playing it.
+// The time of a recording: where it is shown, and playing it. The server keeps the time, for all pages that look at it.
 import { button, h, press, say, select } from "./dom.js";
 import { fixed } from "./format.js";
 
-const PERIOD = 50; // ms
+const PERIOD = 250; // ms between two looks of the scope while it plays
+const HELD = 400; // ms after which the slider follows the server again
 
 export function recordingBar(app) {
-  const { store, connection } = app;
+  const { store } = app;
   const slider = h("input", { type: "range", step: "0.001", "aria-label": "Time of the recording in s" });
   const shown = h("output", { class: "number" });
   const speed = select([["0.1", "× 0.1"], ["0.5", "× 0.5"], ["1", "× 1"], ["5", "× 5"], ["20", "× 20"]], { "aria-label": "Speed of playing" });
   speed.value = "1";
-  const play = button("Play", () => (timer ? stop() : start()), { "aria-pressed": "false" });
+  const play = button("Play", () => setSpeed(isPlaying ? 0 : Number(speed.value)), { "aria-pressed": "false" });
   const bar = h("footer", { class: "recording-bar", hidden: true, "aria-label": "Recording" }, play, speed, slider, shown);
-  let timer = 0;
-  let before = 0;
-  let asked = 0;
+  let [isPlaying, touched, told] = [false, -Infinity, -Infinity];
 
-  function seek(time) {
-    const { start: first, end } = store.machine;
-    const wanted = Math.min(Math.max(time, first || 0), end || 0);
-    slider.value = wanted;
-    say(shown, `${fixed(wanted, 3)} s of ${fixed(end, 1)} s`);
-    if (wanted === asked) return;
-    asked = wanted;
-    connection.send({ type: "seek", time: wanted });
-    store.tell("seek", wanted);
+  async function seek() {
+    touched = performance.now();
+    show(Number(slider.value));
+    if (await app.request("seek", { time: Number(slider.value) })) store.tell("seek", Number(slider.value));
   }
 
-  function step() {
+  async function setSpeed(wanted) {
+    if (!(await app.request("play", { speed: wanted }))) return;
+    isPlaying = wanted > 0;
+    press(play, isPlaying);
+    say(play, isPlaying ? "Pause" : "Play");
+  }
+
+  function show(time) {
+    say(shown, `${fixed(time, 3)} s of ${fixed(store.machine.end, 1)} s`);
+  }
+
+  function follow() {
+    if (bar.hidden || performance.now() - touched < HELD || Number(slider.value) === store.time) return;
+    slider.value = store.time;
+    show(store.time);
     const now = performance.now();
-    const time = Number(slider.value) + ((now - before) / 1000) * Number(speed.value);
-    before = now;
-    seek(time);
-    if (time >= (store.machine?.end ?? 0)) stop();
+    if (now - told > PERIOD) {
+      told = now;
+      store.tell("seek", store.time);
+    }
+    if (isPlaying && store.time >= store.machine.end) setSpeed(0);
   }
 
-  function start() {
-    if (Number(slider.value) >= store.machine.end) slider.value = store.machine.start || 0;
-    before = performance.now();
-    timer = setInterval(step, PERIOD);
-    press(play, true);
-    say(play, "Pause");
-  }
-
-  function stop() {
-    clearInterval(timer);
-    timer = 0;
-    press(play, false);
-    say(play, "Play");
-  }
-
-  slider.addEventListener("input", () => seek(Number(slider.value)));
+  slider.addEventListener("change", seek);
+  slider.addEventListener("input", () => performance.now() - touched > PERIOD && seek());
+  speed.addEventListener("change", () => isPlaying && setSpeed(Number(speed.value)));
+  store.on("state", follow);
   store.on("hello", () => {
-    const recording = store.machine?.recording;
-    bar.hidden = !recording;
-    if (!recording) return;
+    bar.hidden = !store.machine?.recording;
+    if (bar.hidden) return;
     slider.min = store.machine.start ?? 0;
     slider.max = store.machine.end ?? 0;
-    asked = -1;
-    seek(store.machine.start ?? 0);
+    slider.value = slider.min;
+    show(Number(slider.min));
   });
-  store.on("gone", stop);
   return bar;
 }

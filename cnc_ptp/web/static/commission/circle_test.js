@@ -4,6 +4,7 @@ import { short } from "../format.js";
 import { host, PlaneGraph } from "../scope/graphs.js";
 import { Capture } from "../scope/capture.js";
 import { fitCircle, polar } from "./circle.js";
+import { followTask } from "./task.js";
 
 const PLANES = { XY: ["G17", "I"], XZ: ["G18", "I"], YZ: ["G19", "J"] };
 const LONGEST = 100; // s, so that the ring has all of it
@@ -70,16 +71,40 @@ export function circleTest(app) {
     return say(status, `Deviations are drawn ${factor.value} times as large.`);
   }
   factor.addEventListener("change", show);
+  const offline = simulated(app, () => ({ plane: plane.value === "XZ" ? "ZX" : plane.value, radius: Number(radius.value), feed: Number(feed.value) }));
   const element = h(
     "div", { class: "cards" },
     panel("Circle test", h("fieldset", { class: "commands" }, h("div", { class: "row end" }, field("Plane", plane), field("Direction", direction), field("Radius in mm", radius), field("Feed in mm/min", feed), button("Start", start, { class: "primary" }))), field("Deviations drawn so many times as large", factor), status, list),
     panel("Polar plot", place),
+    offline.element,
   );
   return {
     element,
     end() {
+      offline.end();
       capture.end();
       graph.end();
+    },
+  };
+}
+
+/** The same test on a simulation with the machine file; its picture has both directions and the criteria of ISO 230-4. */
+function simulated(app, options) {
+  const picture = h("img", { alt: "Polar plot of the simulated circle test", class: "picture", hidden: true });
+  const report = h("pre", { tabIndex: 0, "aria-label": "Report", hidden: true });
+  const task = followTask(app, (message) => {
+    URL.revokeObjectURL(picture.src);
+    picture.src = URL.createObjectURL(new Blob([message.picture || ""], { type: "image/svg+xml" }));
+    picture.hidden = !message.picture;
+    say(report, message.output || "");
+    report.hidden = !message.output;
+  });
+  const start = h("fieldset", { class: "commands", dataset: { role: "commissioner" } }, button("Simulate", () => task.begin("circle", options())));
+  return {
+    element: panel("On a simulation", start, task.element, picture, report),
+    end() {
+      task.end();
+      URL.revokeObjectURL(picture.src);
     },
   };
 }

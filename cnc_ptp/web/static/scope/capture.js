@@ -81,7 +81,7 @@ export class Capture {
       known.set(channel.name, values);
       return values;
     });
-    this.ring.push(frame.cycle / frame.step, columns, frame.count);
+    this.ring.push(Math.round(frame.cycle / frame.step), columns, frame.count);
     this._step = frame.step;
     this.version += 1;
     if (this.mode === "off" || this.isFrozen) return;

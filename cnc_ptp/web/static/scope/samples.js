@@ -9,10 +9,10 @@ export function readFrame(buffer) {
   return { stream, cycle: high * 2 ** 32 + low, step: 1, columns: columnsOf(buffer, FIELDS * 4, signals, count), count };
 }
 
-/** Samples of a recording: as a frame, with the cycles between two samples in front. */
+/** Samples of a recording: a frame with the cycles between two samples in place of its stream. */
 export function readRecorded(buffer) {
-  const [stream, step, low, high, signals, count] = new Uint32Array(buffer, 0, 6);
-  return { stream, cycle: high * 2 ** 32 + low, step, columns: columnsOf(buffer, 24, signals, count), count };
+  const frame = readFrame(buffer);
+  return { ...frame, step: frame.stream };
 }
 
 function columnsOf(buffer, from, signals, count) {
