@@ -102,7 +102,9 @@ def until(page: Any, expression: str) -> Any:
     raise AssertionError(f"not true in {PATIENCE} ms: {expression}")
 
 
-def open_page(browser: Any, url: str, *, size: dict[str, int] | None = None, scheme: str = "light", command: bool = False) -> Any:
+def open_page(
+    browser: Any, url: str, *, size: dict[str, int] | None = None, scheme: str = "light", command: bool = False
+) -> Any:
     """A page that is connected; `command`: it holds the command."""
     page = browser.new_page(viewport=size or DESKTOP, color_scheme=scheme)
     page.set_default_timeout(PATIENCE)

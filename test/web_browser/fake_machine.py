@@ -35,7 +35,15 @@ def axis(name: str) -> dict[str, Any]:
         "jerk": 20000.0,
         "override": 150,
     }
-    return {"name": name, "kind": "axis", "rotary": False, "unit": "mm", "modulo": False, "facing": False, "limits": limits}
+    return {
+        "name": name,
+        "kind": "axis",
+        "rotary": False,
+        "unit": "mm",
+        "modulo": False,
+        "facing": False,
+        "limits": limits,
+    }
 
 
 def argument(kind: str, required: bool = False, choices: tuple[str, ...] = ()) -> dict[str, Any]:
@@ -118,7 +126,9 @@ class Fake:
         return web.json_response({"user": "web", "role": "commissioner", "token": "token", "login": False})
 
     async def _list(self, _request: web.Request) -> web.Response:
-        return web.json_response({"programs": [{"name": name, "size": len(text)} for name, text in self.programs.items()]})
+        return web.json_response(
+            {"programs": [{"name": name, "size": len(text)} for name, text in self.programs.items()]}
+        )
 
     async def _upload(self, request: web.Request) -> web.Response:
         name = request.query["name"]
@@ -134,7 +144,16 @@ class Fake:
         angle = i * 0.05
         radius = 20 + 30 * i / n
         rapid = i % 500 < 5
-        rows = np.stack([radius * np.cos(angle), radius * np.sin(angle), -10 * i / n, np.where(rapid, 0, 600 + 1400 * (i % 300) / 300), 2 + i * 398 // n], axis=1)
+        rows = np.stack(
+            [
+                radius * np.cos(angle),
+                radius * np.sin(angle),
+                -10 * i / n,
+                np.where(rapid, 0, 600 + 1400 * (i % 300) / 300),
+                2 + i * 398 // n,
+            ],
+            axis=1,
+        )
         return web.Response(body=struct.pack("<4I", 1, n, 0, 0) + rows.astype("<f4").tobytes())
 
     async def _parameters(self, request: web.Request) -> web.Response:
@@ -145,7 +164,10 @@ class Fake:
         return web.json_response({"unit": request.query["unit"], "parameters": rows})
 
     async def _curve(self, _request: web.Request) -> web.Response:
-        points = [{"speed": n, "torque": 20 if n < 3000 else 60000 / n, "power": min(n * 0.00209, 6.28)} for n in range(0, 12001, 500)]
+        points = [
+            {"speed": n, "torque": 20 if n < 3000 else 60000 / n, "power": min(n * 0.00209, 6.28)}
+            for n in range(0, 12001, 500)
+        ]
         return web.json_response({"points": points})
 
     async def _recorded(self, request: web.Request) -> web.Response:
@@ -154,19 +176,56 @@ class Fake:
         step = max(1, round((end - begin) * 1000 / 2000))
         cycles = np.arange(round(begin * 1000), round(end * 1000), step)
         columns = np.concatenate([self.column(name, cycles) for name in names]).astype("<f4")
-        return web.Response(body=struct.pack("<5I", step, int(cycles[0]), 0, len(names), len(cycles)) + columns.tobytes())
+        return web.Response(
+            body=struct.pack("<5I", step, int(cycles[0]), 0, len(names), len(cycles)) + columns.tobytes()
+        )
 
     # the socket
 
     def hello(self, page: int) -> dict[str, Any]:
-        channel = {"name": "channel", "kind": "channel", "axes": [{"unit": n, "name": n.upper()} for n in "xyz"], "turning": False}
+        channel = {
+            "name": "channel",
+            "kind": "channel",
+            "axes": [{"unit": n, "name": n.upper()} for n in "xyz"],
+            "turning": False,
+        }
         units = [{"name": "plc", "kind": "plc"}, channel, {"name": "s", "kind": "spindle"}, *(axis(n) for n in "xyz")]
-        signals = {n: [{"field": f, "unit": "mm"} for f in FIELDS] for n in "xyz"} | {"s": [{"field": "actual_speed_rpm", "unit": "rpm"}]}
-        machine = {"name": "Demo mill", "units": units, "commands": COMMANDS, "cycle_time": 0.001, "block_cycles": 10, "recording": self.recording, "signals": signals}
+        signals = {n: [{"field": f, "unit": "mm"} for f in FIELDS] for n in "xyz"} | {
+            "s": [{"field": "actual_speed_rpm", "unit": "rpm"}]
+        }
+        machine = {
+            "name": "Demo mill",
+            "units": units,
+            "commands": COMMANDS,
+            "cycle_time": 0.001,
+            "block_cycles": 10,
+            "recording": self.recording,
+            "signals": signals,
+        }
         if self.recording:
             machine |= {"start": 0.0, "end": 30.0}
-        offsets = {"channel": {"channel": "channel", "axes": ["X", "Y", "Z"], "zero_index": 1, "zero_name": "", "zero_offset": [12.5, 0.0, -3.0]}}
-        return {"type": "hello", "offsets": offsets, "programs": [], "version": 1, "user": "web", "role": "commissioner", "page": page, "machine": machine, "operator": self.operator(), "alarms": [], "handshakes": []}
+        offsets = {
+            "channel": {
+                "channel": "channel",
+                "axes": ["X", "Y", "Z"],
+                "zero_index": 1,
+                "zero_name": "",
+                "zero_offset": [12.5, 0.0, -3.0],
+            }
+        }
+        return {
+            "type": "hello",
+            "offsets": offsets,
+            "programs": [],
+            "version": 1,
+            "user": "web",
+            "role": "commissioner",
+            "page": page,
+            "machine": machine,
+            "operator": self.operator(),
+            "alarms": [],
+            "handshakes": [],
+        }
 
     def operator(self) -> dict[str, Any]:
         return {"holder": None if self.holder is None else {"user": "web", "page": self.holder}, "asking": None}
@@ -205,9 +264,14 @@ class Fake:
         elif kind == "load":
             self.state["channel"] |= {"program": message["name"], "state": "ready"}
             await self.tell({"type": "program", "channel": "channel", "name": message["name"]})
-            await self.tell({"type": "backplot", "channel": "channel", "name": message["name"], "points": self.points})
         elif kind == "acknowledge":
-            await self.tell({"type": "acknowledged", "alarms": [message["alarm"]] if message.get("alarm") else [*range(1, self.alarm + 1)], "user": "web"})
+            await self.tell(
+                {
+                    "type": "acknowledged",
+                    "alarms": [message["alarm"]] if message.get("alarm") else [*range(1, self.alarm + 1)],
+                    "user": "web",
+                }
+            )
         if message.get("id") is not None:
             await socket.send_json({"type": "answer", "id": message["id"], "ok": True, "cycle": self.cycle, **fields})
 
@@ -227,11 +291,34 @@ class Fake:
 
     async def raise_alarm(self, text: str, *, severity: str = "error", number: int = 70100, source: str = "x") -> None:
         self.alarm += 1
-        event = {"time": self.time, "cycle": self.cycle, "source": source, "severity": severity, "number": number, "text": text, "cause": "The axis is blocked, or its limits are too tight.", "remedy": "Look for what blocks it; P-AXIS-00168.", "line": 12, "values": []}
+        event = {
+            "time": self.time,
+            "cycle": self.cycle,
+            "source": source,
+            "severity": severity,
+            "number": number,
+            "text": text,
+            "cause": "The axis is blocked, or its limits are too tight.",
+            "remedy": "Look for what blocks it; P-AXIS-00168.",
+            "line": 12,
+            "values": [],
+        }
         await self.tell({"type": "event", **event, "alarm": self.alarm, "acknowledged": False, "acknowledged_by": ""})
 
     async def request(self, **fields: Any) -> None:
-        await self.tell({"type": "handshake", "id": 7, "channel": "channel", "kind": "M", "number": 6, "value": 0, "spindle": "", "line": 12, **fields})
+        await self.tell(
+            {
+                "type": "handshake",
+                "id": 7,
+                "channel": "channel",
+                "kind": "M",
+                "number": 6,
+                "value": 0,
+                "spindle": "",
+                "line": 12,
+                **fields,
+            }
+        )
 
     async def tell(self, message: dict[str, Any]) -> None:
         for socket in self.sockets:
@@ -247,18 +334,36 @@ class Fake:
             await self._tell_samples()
             if self.cycle % 1000 == 0:
                 values = {"lateness p99 [ms]": "2.1", "lateness, largest [ms]": "4.7", "lost blocks": "0"}
-                nodes = [{"name": name, "level": 0, "text": "Standstill", "values": values} for name in ("channel", "x", "y", "z", "s", "plc", "clock")]
+                nodes = [
+                    {"name": name, "level": 0, "text": "Standstill", "values": values}
+                    for name in ("channel", "x", "y", "z", "s", "plc", "clock")
+                ]
                 await self.tell({"type": "diagnostics", "nodes": nodes})
 
     async def _tell_state(self) -> None:
         angle = self.time * 0.5
         places = {"x": 50 * cos(angle), "y": 50 * sin(angle), "z": -5.0}
         for name, place in places.items():
-            self.state[name] |= {"set_position": round(place, 6), "actual_position": round(place - 0.004, 6), "work_position": round(place - 10, 6), "distance_to_go": 1.25, "following_error": 0.004, "set_velocity": 25.0, "velocity": 24.8, "command_velocity": 25.1, "target_velocity": 25.0}
+            self.state[name] |= {
+                "set_position": round(place, 6),
+                "actual_position": round(place - 0.004, 6),
+                "work_position": round(place - 10, 6),
+                "distance_to_go": 1.25,
+                "following_error": 0.004,
+                "set_velocity": 25.0,
+                "velocity": 24.8,
+                "command_velocity": 25.1,
+                "target_velocity": 25.0,
+            }
         channel = self.state["channel"]
         if channel["state"] == "running":
             channel["line"] = 2 + int(self.time * 5) % 390
-            channel |= {"progress": round(channel["line"] / 400, 4), "time_left": 80 - channel["line"] / 5, "feed": 1180.0, "programmed_feed": 1200.0}
+            channel |= {
+                "progress": round(channel["line"] / 400, 4),
+                "time_left": 80 - channel["line"] / 5,
+                "feed": 1180.0,
+                "programmed_feed": 1200.0,
+            }
         await self.tell({"type": "state", "time": self.time, "units": self.state})
 
     async def _tell_samples(self) -> None:
@@ -267,7 +372,9 @@ class Fake:
             socket = self.sockets[page - 1]
             columns = np.concatenate([self.column(name, cycles) for name in names]).astype("<f4")
             if not socket.closed:
-                await socket.send_bytes(struct.pack("<5I", page, self.cycle - CYCLES, 0, len(names), CYCLES) + columns.tobytes())
+                await socket.send_bytes(
+                    struct.pack("<5I", page, self.cycle - CYCLES, 0, len(names), CYCLES) + columns.tobytes()
+                )
 
     @staticmethod
     def column(name: str, cycles: Any) -> Any:
@@ -278,4 +385,8 @@ class Fake:
 
 
 if __name__ == "__main__":
-    web.run_app(Fake(points=150_000, recording="recording" in sys.argv).app, host="127.0.0.1", port=int(sys.argv[1]) if len(sys.argv) > 1 else 8099)
+    web.run_app(
+        Fake(points=150_000, recording="recording" in sys.argv).app,
+        host="127.0.0.1",
+        port=int(sys.argv[1]) if len(sys.argv) > 1 else 8099,
+    )

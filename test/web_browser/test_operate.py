@@ -1,5 +1,7 @@
 """Operate: jog that always ends, program, overrides, MDI, handshakes."""
 
+from itertools import pairwise
+
 import pytest
 
 LOST = {
@@ -58,7 +60,7 @@ def test_jog_messages_come_every_50_ms(look, fake):
     wait_for(page, lambda: len(jogs(fake)) >= 20)
     page.mouse.up()
     times = [message["time"] for message in jogs(fake)]
-    steps = sorted(later - earlier for earlier, later in zip(times, times[1:], strict=False))
+    steps = sorted(later - earlier for earlier, later in pairwise(times))
     assert 45 <= steps[len(steps) // 2] <= 70
 
 
@@ -128,7 +130,10 @@ def test_a_program_of_150000_lines_is_a_short_list(look, fake):
 
 def test_upload_and_drop(look, fake):
     page = look(command=True)
-    page.set_input_files("[aria-label='Upload a program']", {"name": "new.nc", "mimeType": "text/plain", "buffer": b"N10 G0 X5\nN20 M30\n"})
+    page.set_input_files(
+        "[aria-label='Upload a program']",
+        {"name": "new.nc", "mimeType": "text/plain", "buffer": b"N10 G0 X5\nN20 M30\n"},
+    )
     page.wait_for_selector(".line >> text=N10 G0 X5")
     assert fake.programs["new.nc"] == "N10 G0 X5\nN20 M30\n"
     page.evaluate(
@@ -173,7 +178,10 @@ def test_a_handshake_is_acknowledged(look, server, fake):
     server.do(fake.request(kind="M", number=6))
     page.wait_for_selector("text=M6")
     page.click(".handshakes >> text=Acknowledge")
-    wait_for(page, lambda: {"unit": "plc", "command": "acknowledge", "arguments": {"id": 7}}.items() <= fake.received[-1].items())
+    wait_for(
+        page,
+        lambda: {"unit": "plc", "command": "acknowledge", "arguments": {"id": 7}}.items() <= fake.received[-1].items(),
+    )
     page.wait_for_selector(".handshakes li", state="detached")
 
 

@@ -1,8 +1,10 @@
 """Scope: every sample, triggers, measures, spectrum, formulas, views, CSV; and the modules that compute them."""
 
 import math
+from pathlib import Path
 
 from browser_support import until
+
 
 def module(page, name, body):
     """The result of a function of a module, in the browser."""
@@ -73,7 +75,7 @@ def test_export_has_every_cycle(look):
     page.click("button:text-is('Freeze')")
     with page.expect_download() as download:
         page.click("text=Export CSV")
-    lines = open(download.value.path(), encoding="utf-8").read().splitlines()
+    lines = Path(download.value.path()).read_text(encoding="utf-8").splitlines()
     assert lines[0] == "cycle,time,x.set_velocity,x.following_error"
     cycles = [int(line.split(",")[0]) for line in lines[1:]]
     assert cycles == [*range(cycles[0], cycles[0] + len(cycles))]

@@ -78,7 +78,17 @@ def test_the_page_comes_back_when_the_connection_breaks(look, server, fake):
 
 def test_the_end_of_the_machine_is_shown(look, server, fake):
     page = look()
-    server.do(fake.tell({"type": "gone", "number": 26171, "text": "the machine is gone: its graph has ended", "cause": "", "remedy": ""}))
+    server.do(
+        fake.tell(
+            {
+                "type": "gone",
+                "number": 26171,
+                "text": "the machine is gone: its graph has ended",
+                "cause": "",
+                "remedy": "",
+            }
+        )
+    )
     page.wait_for_selector(".instead >> text=the machine is gone")
     assert "No machine" in page.inner_text(".pill")
 
@@ -89,7 +99,17 @@ def test_texts_are_never_markup(look, server, fake):
     page.click(f"[aria-label='Load {NASTY}']")
     page.wait_for_selector(".line >> text=<script>")
     server.do(fake.raise_alarm("<img src=x onerror='window.hacked = true'>"))
-    server.do(fake.tell({"type": "error", "number": 26233, "text": "<script>window.hacked = true</script>", "cause": "", "remedy": ""}))
+    server.do(
+        fake.tell(
+            {
+                "type": "error",
+                "number": 26233,
+                "text": "<script>window.hacked = true</script>",
+                "cause": "",
+                "remedy": "",
+            }
+        )
+    )
     page.wait_for_selector(".notice >> text=<script>")
     page.click("text=1 alarm")
     page.wait_for_selector(".alarm >> text=<img")
@@ -101,7 +121,9 @@ def test_the_emergency_stop_needs_no_command_right(look, fake):
     page = look()
     page.click("text=Emergency stop")
     page.wait_for_selector(".pill >> text=Emergency stop")
-    assert {"unit": "plc", "command": "emergency_stop", "arguments": {"enabled": True}}.items() <= fake.received[-1].items()
+    assert {"unit": "plc", "command": "emergency_stop", "arguments": {"enabled": True}}.items() <= fake.received[
+        -1
+    ].items()
     page.on("dialog", lambda dialog: dialog.accept())
     page.click("text=Release stop")
     page.wait_for_selector(".pill >> text=Ready")

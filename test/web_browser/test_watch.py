@@ -38,7 +38,10 @@ def test_only_what_is_done_is_drawn(look, server, fake):
     page.wait_for_selector("[data-ms]")
     page.evaluate("app.command('channel', 'start')")
     page.click("text=Only what is done")
-    until(page, "document.querySelector('.backplot').scene._shown < 2990 && document.querySelector('.backplot').scene._shown > 0")
+    until(
+        page,
+        "document.querySelector('.backplot').scene._shown < 2990 && document.querySelector('.backplot').scene._shown > 0",
+    )
     page.wait_for_selector("text=left · line")
 
 
@@ -65,7 +68,9 @@ def test_a_recording_has_a_time_and_nothing_to_operate(browser):
         assert page.locator("nav.pages a").all_inner_texts() == ["Watch", "Scope", "Alarms"]
         assert page.locator("text=Take command").is_hidden()
         page.click("text=Scope")
-        page.evaluate("() => { const slider = document.querySelector('.recording-bar input'); slider.value = 12; slider.dispatchEvent(new Event('input')); }")
+        page.evaluate(
+            "() => { const slider = document.querySelector('.recording-bar input'); slider.value = 12; slider.dispatchEvent(new Event('input')); }"
+        )
         page.wait_for_selector("text=12.000 s of 30.0 s")
         until(page, "document.querySelector('main').innerText.includes('2000 samples')")
         assert [message["time"] for message in fake.received if message["type"] == "seek"][-1] == 12

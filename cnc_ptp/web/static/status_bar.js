@@ -55,7 +55,7 @@ function command(app) {
   };
   for (const topic of ["operator", "hello", "link", "gone"]) store.on(topic, show);
   show();
-  return h("div", { class: "group", "aria-live": "polite" }, who, act, give);
+  return h("div", { class: "group command", "aria-live": "polite" }, who, act, give);
 }
 
 function alarms(app) {

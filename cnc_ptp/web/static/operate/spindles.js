@@ -52,11 +52,13 @@ function view(app, { name }) {
       gear(now.gear || "–");
       mode((now.modes || []).join(", ") || "–");
       state(now.state || "–");
-      position(fixed(now.actual_position, 2));
+      position(fixed(modulo(now.actual_position), 2));
       master(now.master || "–");
     },
   };
 }
+
+const modulo = (angle) => (typeof angle === "number" ? ((angle % 360) + 360) % 360 : angle);
 
 function tool(app) {
   const list = h("div", { class: "readings" });

@@ -5,6 +5,8 @@ import { PathScene } from "./scene.js";
 import { colours, geometry, pointsUpTo, readPath, scaleColour } from "./toolpath.js";
 
 const TURN = 10; // degrees of a key
+const NO_PROGRAM = 26242;
+const CUT_OFF = 2; // flag: the program goes on
 
 export function backplot(app) {
   const { store } = app;
@@ -27,13 +29,13 @@ export function backplot(app) {
 
   async function load() {
     const begin = performance.now();
+    say(status, "The server draws the program …");
     let bytes;
     try {
       bytes = await app.connection.http(`/api/backplot?channel=${encodeURIComponent(store.channel)}`, { as: "bytes" });
-      if (bytes.byteLength === 0) return;
       path = readPath(bytes);
     } catch (error) {
-      say(status, error.message);
+      say(status, error.number === NO_PROGRAM ? "No program is loaded." : error.message);
       return;
     }
     const shape = geometry(path);
@@ -42,7 +44,7 @@ export function backplot(app) {
     if (path.isTurning) turn("turning");
     scene.drawNow();
     element.dataset.ms = Math.round(performance.now() - begin);
-    say(status, `${(pairs.length / 2).toLocaleString("en")} segments · ${[0, 1, 2].map((k) => `${"XYZ"[k]} ${fixed(shape.box.min[k], 1)} … ${fixed(shape.box.max[k], 1)}`).join(" · ")} mm`);
+    say(status, `${path.flags & CUT_OFF ? "Not to its end: " : ""}${(pairs.length / 2).toLocaleString("en")} segments · ${[0, 1, 2].map((k) => `${"XYZ"[k]} ${fixed(shape.box.min[k], 1)} … ${fixed(shape.box.max[k], 1)}`).join(" · ")} mm`);
   }
 
   function colour() {
@@ -84,7 +86,7 @@ export function backplot(app) {
   });
   const theme = () => scene.setTheme();
   window.addEventListener("theme", theme);
-  const ends = [store.on("state", update), store.on("backplot", load), () => window.removeEventListener("theme", theme), () => scene.end()];
+  const ends = [store.on("state", update), store.on("program", load), () => window.removeEventListener("theme", theme), () => scene.end()];
   element.scene = scene;
   load();
   update();

@@ -8,7 +8,7 @@ export function readPath(buffer) {
   const head = new Uint32Array(buffer, 0, HEADER / 4);
   const count = head[1];
   if (head[0] !== 1 || buffer.byteLength !== HEADER + count * FLOATS * 4) throw new Error("the backplot of the server is in another format");
-  return { count, isTurning: Boolean(head[2] & TURNING), rows: new Float32Array(buffer, HEADER, count * FLOATS) };
+  return { count, flags: head[2], isTurning: Boolean(head[2] & TURNING), rows: new Float32Array(buffer, HEADER, count * FLOATS) };
 }
 
 /** Positions of points, pairs of points that are joined, and the box around them. */
