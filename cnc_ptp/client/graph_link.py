@@ -92,7 +92,7 @@ class GraphLink(Link):
             take = chain(codec_of(BLOCK_CLASSES[kind]).decode, partial(self._take_block, unit))
             client.poll(BLOCK_TYPES[kind], block_topic(unit), take, BLOCKS)
         client.poll(msg.Event, EVENT, self._take_event, self.event_quality)
-        client.poll(msg.CommandRecord, COMMAND, self._take_record, FROM_NOW_ON)
+        client.poll(msg.CommandRecord, COMMAND, self._take_record, self.event_quality)
 
     def wait_until_complete(self, timeout: float) -> None:
         """Every unit has told of itself. Raises CncError 26176."""

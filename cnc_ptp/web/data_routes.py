@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+import tempfile
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 from aiohttp import web
@@ -31,6 +33,7 @@ class DataRoutes:
     def add_to(self, app: web.Application) -> None:
         app.router.add_get("/api/parameters", self._parameters)
         app.router.add_get("/api/recorded", self._recorded)
+        app.router.add_get("/api/snapshot.mcap", self._snapshot)
 
     async def _parameters(self, request: web.Request) -> web.StreamResponse:
         """`?unit=x`: all its parameters, as the machine file has them."""
@@ -55,6 +58,17 @@ class DataRoutes:
         points = int(number(query.get("points", "10000")))
         data = await asyncio.to_thread(face.samples, signals, begin, end, max(1, points))
         return web.Response(body=data, content_type="application/octet-stream", headers=NOT_STORED)
+
+    async def _snapshot(self, request: web.Request) -> web.StreamResponse:
+        """`?seconds=N`: the last seconds of the machine as a recording, where it has a recorder."""
+        self._access.login_of(request)
+        seconds = number(request.query.get("seconds", "0"))
+        with tempfile.TemporaryDirectory(prefix="cnc_ptp-") as folder:
+            file = Path(folder) / "snapshot.mcap"
+            await self._hub.require_face().snapshot(str(file), seconds)
+            content = await asyncio.to_thread(file.read_bytes)
+        headers = {**NOT_STORED, "Content-Disposition": 'attachment; filename="snapshot.mcap"'}
+        return web.Response(body=content, content_type="application/octet-stream", headers=headers)
 
 
 def number(text: str) -> float:

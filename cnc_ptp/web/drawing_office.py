@@ -15,6 +15,14 @@ KEPT = 4
 """Drawings, the newest ones."""
 
 
+def try_to_draw(drawing: Drawing) -> bytes | str:
+    """As backplot.draw; of a program that is refused the text: its error does not travel between processes."""
+    try:
+        return draw(drawing)
+    except CncError as error:
+        return error.full_message
+
+
 class DrawingOffice:
     """One drawing at a time; pages that want the same one wait for it together."""
 
@@ -38,13 +46,14 @@ class DrawingOffice:
     async def _draw(self, drawing: Drawing) -> bytes:
         loop = asyncio.get_running_loop()
         try:
-            return await loop.run_in_executor(self._started(), draw, drawing)
+            drawn = await loop.run_in_executor(self._started(), try_to_draw, drawing)
         except BrokenProcessPool:
             self._pool = None
             reason = f"backplot of {drawing.file}: the process that draws has ended"
             raise CncError(NOT_DRAWN, reason, "ask again") from None
-        except CncError as error:
-            raise CncError(NOT_DRAWN, f"backplot of {drawing.file}: {error.full_message}", "nothing is shown") from None
+        if isinstance(drawn, str):
+            raise CncError(NOT_DRAWN, f"backplot of {drawing.file}: {drawn}", "nothing is shown")
+        return drawn
 
     def _started(self) -> ProcessPoolExecutor:
         if self._pool is None:

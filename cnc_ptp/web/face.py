@@ -8,8 +8,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from cnc_ptp.client.link import Reply
+from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import ParameterSet
 from cnc_ptp.protocol.blocks import CommandRecord, CycleBlock, Event, HandshakeRequest
+from cnc_ptp.web.numbers import NO_SNAPSHOT
 
 State = Mapping[str, Mapping[str, Any]]
 """Unit -> its fields, as protocol.py sends them."""
@@ -58,6 +60,11 @@ class Face(ABC):
     @abstractmethod
     async def ask(self, unit: str, command: str, arguments: Mapping[str, Any], *, user: str) -> Reply:
         """Gives a command. Raises the refusal of the unit, and CncError 22001, 22002, 26111, 26136, 26171."""
+
+    async def snapshot(self, file: str, seconds: float) -> None:
+        """The recorder writes its last seconds into a file; 0: all that it keeps. Raises its refusal, CncError 26136."""
+        effect = "nothing was written; run with --keep SECONDS"
+        raise CncError(NO_SNAPSHOT, "snapshot: there is no recorder", effect)
 
     @abstractmethod
     def jog(self, axis: str, velocity: float, *, user: str) -> None:

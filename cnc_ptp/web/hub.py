@@ -18,6 +18,7 @@ from cnc_ptp.web.command_right import CommandRight
 from cnc_ptp.web.drawing_office import DrawingOffice
 from cnc_ptp.web.face import Face, State
 from cnc_ptp.web.numbers import NO_MACHINE_YET
+from cnc_ptp.web.offset_table import OffsetTable
 from cnc_ptp.web.program_watch import ProgramWatch
 from cnc_ptp.web.programs import ProgramFolder
 from cnc_ptp.web.protocol import VERSION, difference, error_fields
@@ -50,6 +51,7 @@ class Hub:
         self.right = CommandRight()
         self.alarms = Alarms()
         self.handshakes: dict[int, dict[str, Any]] = {}
+        self.tables: dict[str, OffsetTable] = {}
         self.offsets: dict[str, dict[str, Any]] = {}
         """Channel -> what lies between programmed and machine positions."""
         self._state: State = {}
@@ -90,6 +92,9 @@ class Hub:
         self.face, self._state, self.alarms = face, {}, Alarms()
         self.handshakes.clear()
         self.programs.forget()
+        self.offsets.clear()
+        channels = [unit for unit, kind in face.kinds.items() if kind == "channel"]
+        self.tables = {unit: OffsetTable(face.sets[unit], face.sets) for unit in channels}
         self.programs.text_of = face.text_of
         for session in self.sessions:
             session.send({"type": "back"})
@@ -168,7 +173,9 @@ class Hub:
             self.to_all({"type": "handshake", **request_fields(request)})
 
     def _tell_answered(self, record: CommandRecord) -> None:
-        """A request that was acknowledged, by whomever."""
+        """A request that was acknowledged, an offset that was changed, by whomever."""
+        if record.target in self.tables:
+            self.tables[record.target].take_record(record)
         if record.command == "acknowledge" and record.accepted:
             number = json.loads(record.arguments_json).get("id")
             if self.handshakes.pop(number, None) is not None:
@@ -176,6 +183,7 @@ class Hub:
 
     def _tell_offsets(self, channel: str, block: ChannelBlock) -> None:
         for offsets in block.offsets:
+            self.tables[channel].take_active(offsets)
             self.offsets[channel] = {"channel": channel, **asdict(offsets)}
             self.to_all({"type": "offsets", **self.offsets[channel]})
 

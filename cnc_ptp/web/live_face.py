@@ -16,6 +16,7 @@ from rclpy.publisher import Publisher
 
 from cnc_ptp import msg
 from cnc_ptp.client import Machine
+from cnc_ptp.client.faults import error_of
 from cnc_ptp.client.graph_link import GraphLink, connect_graph
 from cnc_ptp.client.link import Reply
 from cnc_ptp.nodes import convert
@@ -95,6 +96,12 @@ class WebLink(GraphLink):
         except Exception as error:  # for the page that has asked
             answer.set_exception(error)
 
+    def snapshot(self, file: str, seconds: float) -> Future[Any]:
+        """The response of the recorder."""
+        answer: Future[Any] = Future()
+        self._thread.call(lambda client: self._calls.begin_snapshot(client, file, seconds, answer))
+        return answer
+
     def jog(self, axis: str, velocity: float, client: str) -> None:
         """One message, at once."""
         self._jog_number += 1
@@ -120,6 +127,11 @@ class LiveFace(MachineFace):
 
     def programs(self) -> Mapping[str, Mapping[str, Any]]:
         return self._graph.programs
+
+    async def snapshot(self, file: str, seconds: float) -> None:
+        response = await asyncio.wrap_future(self._graph.snapshot(file, seconds))
+        if not response.accepted:
+            raise error_of(response.error_id, response.message, read_values(response.values_json))
 
     def news(self) -> News:
         news = super().news()

@@ -38,6 +38,7 @@ class PageMessages:
             "give_command": self._give_command,
             "acknowledge": self._acknowledge,
             "load": self._load,
+            "offsets": self._offsets,
             "scope": self._scope,
             "scope_stop": self._scope_stop,
             "seek": self._seek,
@@ -102,6 +103,14 @@ class PageMessages:
             arguments["text"] = text
             self._hub.programs.give_text(path, text)
         return self._ask(message, channel, "load", arguments)
+
+    def _offsets(self, message: Message) -> None:
+        """The zero offsets of a channel."""
+        tables = self._hub.tables
+        channel = field(message, "channel", "text", next(iter(tables), "channel"))
+        if channel not in tables:
+            raise unknown_unit(channel, tables, "channel")
+        self._session.send(answer(message, **tables[channel].shown()))
 
     # the scope
 

@@ -73,3 +73,18 @@ def test_the_scope_has_every_cycle():
             assert frames[0][1].shape[0] == 2
 
     asyncio.run(story())
+
+
+def test_zero_offsets_and_their_changes():
+    async def story():
+        async with site() as here:
+            page = await here.page()
+            assert (await page.ask("offsets"))["axes"] == ["X", "Y", "Z"]
+            assert (await page.command("channel", "set_zero_offset", index=2, axis="X", value=12.5))["ok"]
+            assert (await page.command("channel", "teach_zero_offset", index=3))["ok"]
+            await page.wait_for("event", lambda event: "teach_zero_offset" in event["text"])
+            rows = {row["index"]: row for row in (await page.ask("offsets"))["offsets"]}
+            assert rows[2] == {"index": 2, "name": "G55", "values": {"X": 12.5, "Y": 0.0, "Z": 0.0}}
+            assert rows[3]["values"] == {"X": None, "Y": None, "Z": None}
+
+    asyncio.run(story())

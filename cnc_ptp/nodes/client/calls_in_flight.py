@@ -14,7 +14,10 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.nodes.bridge.coupling_services import PATIENCE as COUPLING_PATIENCE
 from cnc_ptp.nodes.client.machine_client import MARGIN, NO_ANSWER, PATIENCE, MachineClient, services_of
 from cnc_ptp.nodes.client.requests import request_of
-from cnc_ptp.nodes.topics import COUPLING_SERVICES
+from cnc_ptp.nodes.topics import COUPLING_SERVICES, RECORDER, RECORDER_SERVICES
+
+SNAPSHOT_PATIENCE = 20.0
+"""Seconds for a snapshot to be written."""
 
 
 @dataclass(slots=True)
@@ -51,8 +54,19 @@ class CallsInFlight:
         patience = COUPLING_PATIENCE + MARGIN if command in COUPLING_SERVICES else PATIENCE
         request = request_of(services_of(client.kinds[unit])[command], arguments)
         what = f"{client.kinds[unit]} {unit}: {command}"
-        deadline = time.monotonic() + patience
-        self._calls.append(Call(what, self._clients[unit, command], request, deadline, patience, answer))
+        self._begin(what, self._clients[unit, command], request, patience, answer)
+
+    def begin_snapshot(self, client: MachineClient, file: str, seconds: float, answer: Future[Any]) -> None:
+        """Of the recorder; as `begin`."""
+        command = "snapshot"
+        if (RECORDER, command) not in self._clients:
+            service = RECORDER_SERVICES[command]
+            self._clients[RECORDER, command] = client.create_client(service, f"{RECORDER}/{command}")
+        request = request_of(RECORDER_SERVICES[command], {"file": file, "seconds": seconds})
+        self._begin(f"{RECORDER}: {command}", self._clients[RECORDER, command], request, SNAPSHOT_PATIENCE, answer)
+
+    def _begin(self, what: str, client: Client[Any, Any], request: Any, patience: float, answer: Future[Any]) -> None:
+        self._calls.append(Call(what, client, request, time.monotonic() + patience, patience, answer))
         self.go_on()
 
     def go_on(self) -> None:

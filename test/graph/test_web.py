@@ -1,0 +1,100 @@
+"""The web face with a graph: `run --web`, the server killed in a jog, the graph that ends before its pages."""
+
+import asyncio
+import signal
+import time
+
+import psutil
+import pytest
+from aiohttp import ClientSession, CookieJar
+from aiohttp.test_utils import unused_port
+from graph_support import Running, small_machine, verified
+from web_support import Page
+
+from cnc_ptp.recording.reader import read_recording
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("web")
+
+
+@pytest.fixture(scope="module")
+def machine(folder):
+    return small_machine(folder)
+
+
+async def open_page(session, port):
+    """A page that has its machine and holds the command."""
+    address = f"http://127.0.0.1:{port}"
+    await session.get(address)
+    token = (await (await session.get(f"{address}/api/session")).json())["token"]
+    page = Page(await session.ws_connect(f"{address}/ws"))
+    await page.send(type="hello", token=token)
+    page.hello = await page.wait_for("hello", lambda hello: hello["machine"])
+    assert (await page.ask("take_command"))["ok"]
+    return page
+
+
+async def press(page, seconds, velocity=5.0):
+    """A key that is held; what comes meanwhile is kept."""
+    begin, sequence = time.monotonic(), 0
+    while time.monotonic() - begin < seconds:
+        sequence += 1
+        await page.send(type="jog", axis="x", velocity=velocity, sequence=sequence, time=time.monotonic() * 1e3)
+        await asyncio.sleep(0.05)
+
+
+def server_of(run):
+    """The process of the pages."""
+    return next(child for child in psutil.Process(run.process.pid).children() if "--listening" in child.cmdline())
+
+
+def test_a_machine_is_operated_and_its_server_killed(ros_domain, machine, folder):
+    port = unused_port()
+    recording = folder / "run.mcap"
+
+    async def story(run):
+        async with ClientSession(cookie_jar=CookieJar(unsafe=True)) as session:
+            page = await open_page(session, port)
+            assert (await page.ask("scope", signals=["x.set_position", "y.set_position"]))["ok"]
+            answer = await page.command("x", "move_absolute", target=3)
+            assert answer["ok"], answer
+            await page.state_of("x", lambda x: x.get("set_position") == 3.0)
+            frames = [await page.frame() for _ in range(5)]
+            cycles = [cycle for first, values in frames for cycle in range(first, first + values.shape[1])]
+            assert cycles == [*range(cycles[0], cycles[0] + len(cycles))]
+            refused = await page.command("x", "move_absolute", target=1e6)
+            assert refused["number"] and refused["remedy"]
+            held = asyncio.create_task(press(page, 1.5))
+            await page.state_of("x", lambda x: x.get("set_velocity") == 5.0)
+            server_of(run).send_signal(signal.SIGKILL)
+            with pytest.raises((ConnectionError, AssertionError)):
+                await held
+                await page.next()
+            await asyncio.sleep(1.5)
+
+    run = Running(machine, "--composed", "--web", str(port), "--stay", "--record", str(recording))
+    try:
+        wait_for_server(run)
+        asyncio.run(story(run))
+        run.process.send_signal(signal.SIGINT)
+        run.finish(0)
+    finally:
+        run.end()
+    verified(recording)
+    recorded = read_recording(recording)
+    told = [event.text for event in recorded.events if event.source == "web"]
+    assert told[0] == "web: axis x: move_absolute, carried out"
+    assert told[1].startswith("web: axis x: move_absolute, refused with P-ERR-")
+    assert told[2:] == ["web: axis x: jog with 5 begins"]
+    assert [event.error_id for event in recorded.events if event.source == "plc" and event.error_id] == [26134]
+    assert recorded.states["/x/state"]["set_velocity"][-1] == 0.0
+
+
+def wait_for_server(run):
+    """It has told its address."""
+    for line in run.process.stdout:
+        if line.startswith("pages: "):
+            return
+    raise AssertionError("no server")
