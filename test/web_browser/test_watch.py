@@ -65,6 +65,8 @@ def test_a_recording_has_a_time_and_nothing_to_operate(browser):
     with InThread(fake.app) as server:
         page = open_page(browser, server.url)
         page.wait_for_selector("main.watch")
+        page.click("text=Measured path")
+        until(page, "document.querySelector('.backplot').scene._trail?.geometry.attributes.position.count === 2000")
         assert page.locator("nav.pages a").all_inner_texts() == ["Watch", "Scope", "Alarms"]
         assert page.locator("text=Take command").is_hidden()
         page.click("text=Scope")

@@ -56,7 +56,7 @@ export function programPanel(app) {
     say(active, state.active ? state.text || list.lines[state.line - 1] || "" : "");
     list.setActive(state.active && !state.manual ? state.line : 0);
   }
-  const ends = [followProgram(app, (text) => list.setText(text)), store.on("state", update)];
+  const ends = [store.on("programs", fill), followProgram(app, (text) => list.setText(text)), store.on("state", update)];
   fill();
   update();
   return { element, end: () => ends.forEach((end) => end()) };

@@ -17,5 +17,6 @@ export function mount(root, app) {
   takeDrops(folder, async (file) => (await upload(app, file)) && fill());
   root.append(folder, element);
   fill();
-  return { unmount: end };
+  const ends = [end, app.store.on("programs", fill)];
+  return { unmount: () => ends.forEach((one) => one()) };
 }

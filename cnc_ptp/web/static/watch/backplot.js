@@ -2,6 +2,7 @@
 import { button, h, panel, press, say, select, toggle } from "../dom.js";
 import { fixed } from "../format.js";
 import { PathScene } from "./scene.js";
+import { measuredPath } from "./measured_path.js";
 import { colours, geometry, pointsUpTo, readPath, scaleColour } from "./toolpath.js";
 
 const TURN = 10; // degrees of a key
@@ -17,7 +18,9 @@ export function backplot(app) {
   const by = select([["feed", "Colour: feed"], ["block", "Colour: block"]], { "aria-label": "Colour of the path" });
   const views = select([["iso", "View: oblique"], ["top", "View: top (XY)"], ["front", "View: front (XZ)"], ["side", "View: side (YZ)"], ["turning", "View: turning (ZX)"]], { "aria-label": "View" });
   const done = toggle("Only what is done", (on) => (press(done, on), update()));
-  const element = panel("Backplot", h("div", { class: "row" }, views, by, done, button("Fit", () => scene?.look(views.value))), host, legend, status);
+  const measured = toggle("Measured path", showMeasured);
+  measured.hidden = !store.machine.recording;
+  const element = panel("Backplot", h("div", { class: "row" }, views, by, done, measured, button("Fit", () => scene?.look(views.value))), host, legend, status);
   element.classList.add("backplot");
   let [path, pairs, scene] = [null, null, null];
   try {
@@ -59,6 +62,11 @@ export function backplot(app) {
     const rgb = share === null ? [0.55, 0.6, 0.66] : scaleColour(share);
     mark.style.background = `rgb(${rgb.map((value) => Math.round(value * 255)).join(" ")})`;
     return mark;
+  }
+
+  async function showMeasured(on) {
+    press(measured, on);
+    scene?.setTrail(on ? await app.attempt(measuredPath(app)) : null);
   }
 
   function turn(view) {

@@ -10,6 +10,7 @@ import { coarser } from "./toolpath.js";
 const VIEWS = { iso: [1, -1.2, 0.9], top: [0, 0, 1], front: [0, -1, 0], side: [1, 0, 0], turning: [0, -1, 0] };
 const UP = { top: [0, 1, 0], turning: [1, 0, 0] };
 const MARGIN = 1.25;
+const TRAIL = 0xc2255c;
 const SMALLEST = 1e-3; // mm, of the box that is looked at
 
 export class PathScene {
@@ -60,6 +61,23 @@ export class PathScene {
     this._path.add(lines);
     if (box.min[0] <= box.max[0]) this._box = box;
     this.look(this._view);
+  }
+
+  /** Shows another path over it (x, y, z one after the other); null: none. */
+  setTrail(positions) {
+    if (this._trail) {
+      this._trail.geometry.dispose();
+      this._scene.remove(this._trail);
+    }
+    this._trail = null;
+    if (positions) {
+      const shape = new BufferGeometry();
+      shape.setAttribute("position", new BufferAttribute(positions, 3));
+      this._trail = new Line(shape, new LineBasicMaterial({ color: TRAIL }));
+      this._trail.frustumCulled = false;
+      this._scene.add(this._trail);
+    }
+    this.draw();
   }
 
   setColours(colours) {
