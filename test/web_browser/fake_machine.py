@@ -164,11 +164,8 @@ class Fake:
         return web.json_response({"unit": request.query["unit"], "parameters": rows})
 
     async def _curve(self, _request: web.Request) -> web.Response:
-        points = [
-            {"speed": n, "torque": 20 if n < 3000 else 60000 / n, "power": min(n * 0.00209, 6.28)}
-            for n in range(0, 12001, 500)
-        ]
-        return web.json_response({"points": points})
+        points = [{"speed": n, "acceleration": 6000 if n < 3000 else 18e6 / n} for n in range(0, 12001, 500)]
+        return web.json_response({"gears": [{"gear": 1, "kind": "hyperbola", "points": points}]})
 
     async def _recorded(self, request: web.Request) -> web.Response:
         names = request.query["signals"].split(",")
@@ -264,6 +261,9 @@ class Fake:
         elif kind == "load":
             self.state["channel"] |= {"program": message["name"], "state": "ready"}
             await self.tell({"type": "program", "channel": "channel", "name": message["name"]})
+        elif kind == "offsets":
+            values = {"X": 12.5, "Y": 0.0, "Z": None}
+            fields = {"axes": ["X", "Y", "Z"], "offsets": [{"index": 1, "name": "G54", "values": values}]}
         elif kind == "acknowledge":
             await self.tell(
                 {

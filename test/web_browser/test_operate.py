@@ -195,3 +195,23 @@ def test_positions_of_work_and_machine(look, fake):
     assert page.inner_text("[data-axis=z] .big") == "−5.000"
     page.click("button:text-is('Actual')")
     assert page.inner_text("[data-axis=z] .big") == "−5.004"
+
+
+def test_offsets_are_shown_set_and_taught(look, fake):
+    page = look(command=True)
+    cell = page.locator("[aria-label='G54 X']")
+    wait_for(page, lambda: cell.input_value() == "12.5")
+    assert page.locator("[aria-label='G54 Z']").get_attribute("placeholder") == "taught"
+    cell.fill("-4")
+    cell.press("Enter")
+    wait_for(page, lambda: commands(fake)[-1] == ("set_zero_offset", {"index": 1, "axis": "X", "value": -4}))
+    page.click("[aria-label='Teach G55 Y']")
+    wait_for(page, lambda: commands(fake)[-1] == ("teach_zero_offset", {"index": 2, "axis": "Y", "value": 0}))
+    page.click("[aria-label='Teach G56, all axes']")
+    wait_for(page, lambda: commands(fake)[-1] == ("teach_zero_offset", {"index": 3, "value": 0}))
+
+
+def commands(fake):
+    return [
+        (message["command"], message["arguments"]) for message in fake.received if message["type"] == "command"
+    ] or [None]

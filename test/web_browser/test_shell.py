@@ -35,6 +35,14 @@ def test_each_tab_of_an_axis_is_accessible(look):
         assert violations(page) == [], tab.inner_text()
 
 
+def test_the_curve_of_a_spindle_is_drawn(look):
+    page = look("commission")
+    page.select_option("label:text-is('Unit') + select", "s")
+    page.click("[role=tab]:text-is('Curve')")
+    page.wait_for_selector("[aria-label='Curve of gear 1'] .uplot")
+    assert violations(page) == []
+
+
 @pytest.mark.parametrize("name", PAGES)
 def test_no_page_is_wider_than_a_phone(look, name):
     page = look(name, size=PHONE)

@@ -157,6 +157,19 @@ def test_each_function_of_an_axis_has_its_form(mill):
     until(page, "Math.abs(app.store.units.x.set_position - 2.5) < 1e-9")
 
 
+def test_a_taught_offset_and_the_curve_of_the_spindle(mill):
+    page = mill()
+    page.locator("[aria-label='G55 X']").fill("7.5")
+    page.locator("[aria-label='G55 X']").press("Enter")
+    page.wait_for_selector(".notice >> text=G55 X = 7.500")
+    page.click("[aria-label='Teach G56, all axes']")
+    until(page, "document.querySelector('[aria-label=\\'G56 X\\']').placeholder === 'taught'")
+    page.keyboard.press("Alt+Digit4")
+    page.select_option("label:text-is('Unit') + select", "s")
+    page.click("[role=tab]:text-is('Curve')")
+    page.wait_for_selector("[aria-label='Curve of gear 1'] .uplot")
+
+
 def test_the_ptp_test_goes_to_and_fro(mill):
     page = mill("commission")
     page.click("[role=tab]:text-is('PTP test')")

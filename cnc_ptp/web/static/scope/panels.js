@@ -25,9 +25,13 @@ export function runPanel(app, capture, picture) {
     const lost = capture.ring.lost ? ` · ${capture.ring.lost} samples lost` : "";
     return say(status, `${capture.isFrozen ? "Frozen" : capture.mode === "off" ? "Running" : capture.trigger.cycle === null ? "Waiting for the trigger" : "Triggered"} · ${capture.ring.length} samples${lost}`);
   }, 200);
+  const snapshot = async () => {
+    const bytes = await app.attempt(app.connection.http(`/api/snapshot.mcap?seconds=${Math.max(1, capture.window)}`, { as: "bytes" }));
+    if (bytes) download("snapshot.mcap", bytes, "application/octet-stream");
+  };
   const element = panel(
     "Scope", h("div", { class: "row end" }, field("Window", length), freeze, unzoom), status,
-    h("div", { class: "row" }, button("Export CSV", () => download("scope.csv", csv(capture))), h("a", { href: "/api/snapshot.mcap", download: "snapshot.mcap" }, "MCAP snapshot")),
+    h("div", { class: "row" }, button("Export CSV", () => download("scope.csv", csv(capture))), button("MCAP snapshot", snapshot)),
   );
   return { element, refresh: () => (length.value = String(capture.window)) };
 }
