@@ -79,9 +79,13 @@ class InThread:
         self._loop.call_soon_threadsafe(self._loop.stop)
         self._thread.join(10.0)
 
+    def begin(self, coroutine: Coroutine[Any, Any, Any]) -> Any:
+        """In the thread of the server; what it gives is in `result()`."""
+        return asyncio.run_coroutine_threadsafe(coroutine, self._loop)
+
     def do(self, coroutine: Coroutine[Any, Any, Any]) -> Any:
         """In the thread of the server."""
-        return asyncio.run_coroutine_threadsafe(coroutine, self._loop).result(10.0)
+        return self.begin(coroutine).result(10.0)
 
 
 class Complaints:

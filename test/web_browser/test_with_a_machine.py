@@ -1,6 +1,9 @@
 """The pages with a real machine behind them: an offline one that runs in real time, without DDS."""
 
+import asyncio
 import shutil
+import time
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -32,6 +35,7 @@ def mill(browser, programs):
             pages.append(open_page(browser, f"{server.url}#{name}", **{"command": True, **options}))
             return pages[-1]
 
+        open_one.hub, open_one.server = hub, server
         yield open_one
         complaints = [text for page in pages for text in page.complaints.texts]
         for page in pages:
@@ -79,6 +83,44 @@ def test_a_held_button_moves_the_axis_and_its_end_stops_it(mill):
     page.evaluate("window.dispatchEvent(new Event('blur'))")
     until(page, "app.store.units.x.state === 'Standstill'")
     page.mouse.up()
+
+
+async def watch_velocity(hub, samples, seconds):
+    """Time (s, of this computer) and set velocity of x, every few ms."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        samples.append((time.monotonic(), abs(hub.face.state()["x"]["set_velocity"])))
+        await asyncio.sleep(0.005)
+
+
+def jog_until_it_moves(page):
+    box = page.locator("[aria-label='Jog X +']").bounding_box()
+    page.mouse.move(box["x"] + 10, box["y"] + 10)
+    page.mouse.down()
+    until(page, "app.store.units.x.set_velocity > 10")
+    page.wait_for_timeout(300)
+
+
+@pytest.mark.parametrize("how", ["crash", "close"])
+def test_an_axis_stops_when_its_page_dies(browser, mill, how):
+    """Of the time until it begins 0.2 s are the patience of the axis; 250 ms where nothing else runs."""
+    page = open_page(browser, mill.server.url, command=True)
+    jog_until_it_moves(page)
+    samples = []
+    watching = mill.server.begin(watch_velocity(mill.hub, samples, 1.5))
+    page.wait_for_timeout(100)
+    died = time.monotonic()
+    if how == "crash":
+        with suppress(Exception):
+            page.goto("chrome://crash", timeout=500)
+    else:
+        page.close()
+    watching.result(10.0)
+    held = samples[0][1]
+    slower = next(at for at, velocity in samples if velocity < held - 1e-6)
+    print(f"{how}: the stop begins after {1000 * (slower - died):.0f} ms")
+    assert 0.0 < slower - died < 0.8
+    assert samples[-1][1] == 0.0
 
 
 def test_manual_data_input_moves_and_a_refusal_is_shown(mill):

@@ -2,12 +2,13 @@
 import { button, h, panel, say } from "../dom.js";
 import { fixed } from "../format.js";
 
+const SETTLED = 300; // ms until the server knows of an accepted command
 const NAMES = ["G54", "G55", "G56", "G57", "G58", "G59"];
 
 export function offsets(app) {
   const { store } = app;
   const axes = store.unit(store.channel)?.axes?.map((axis) => axis.name ?? axis) || store.of("axis").map((axis) => axis.name.toUpperCase());
-  const rows = NAMES.map((name, i) => row(app, i + 1, name, axes, () => read()));
+  const rows = NAMES.map((name, i) => row(app, i + 1, name, axes, () => setTimeout(read, SETTLED)));
   const head = h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Offset"), axes.map((axis) => h("th", { scope: "col" }, axis)), h("th", { scope: "col" }, "Teach")));
   const table = h("table", { class: "offsets" }, head, h("tbody", {}, rows.map((one) => one.element)));
   const active = h("p", { class: "muted" });
