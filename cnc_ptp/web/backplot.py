@@ -39,7 +39,7 @@ HEAD = struct.Struct("<4I")
 """Version, points n, flags, number of the program; then n x 5 values of float32, little endian."""
 VERSION = 1
 TURNING, CUT_OFF = 1, 2
-"""Flags: a lathe; the program goes on, but no further than that is known, or shown."""
+"""Flags: a lathe; the program continues, but no further than that is known, or shown."""
 
 
 @dataclass(frozen=True, slots=True)

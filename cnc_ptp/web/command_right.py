@@ -2,24 +2,30 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.web.numbers import NO_COMMAND_RIGHT
 from cnc_ptp.web.protocol import NOTHING
 
-if TYPE_CHECKING:
-    from cnc_ptp.web.session import Session
+
+class Holder(Protocol):
+    """A page that may hold the command."""
+
+    @property
+    def label(self) -> str: ...
+
+    def shown(self) -> dict[str, Any]: ...
 
 
 class CommandRight:
     """The session that holds the command, and the one that asks for it."""
 
     def __init__(self) -> None:
-        self.holder: Session | None = None
-        self.asking: Session | None = None
+        self.holder: Holder | None = None
+        self.asking: Holder | None = None
 
-    def take(self, session: Session) -> None:
+    def take(self, session: Holder) -> None:
         """Raises CncError 26236 while another session holds it."""
         if self.holder not in (None, session):
             assert self.holder is not None
@@ -28,19 +34,19 @@ class CommandRight:
         self.holder = session
         self.asking = None if self.asking is session else self.asking
 
-    def ask(self, session: Session) -> None:
+    def ask(self, session: Holder) -> None:
         """The holder is asked to give it; a command that nobody holds is taken at once."""
         if self.holder in (None, session):
             self.take(session)
         else:
             self.asking = session
 
-    def give(self, session: Session) -> None:
+    def give(self, session: Holder) -> None:
         """To whoever asks for it, or to nobody. Raises CncError 26236 for one who does not hold it."""
         self.require(session, "give_command")
         self.holder, self.asking = self.asking, None
 
-    def leave(self, session: Session) -> bool:
+    def leave(self, session: Holder) -> bool:
         """The session has ended; whether anything has changed."""
         changed = session in (self.holder, self.asking)
         if self.asking is session:
@@ -49,7 +55,7 @@ class CommandRight:
             self.holder, self.asking = self.asking, None
         return changed
 
-    def require(self, session: Session, what: str) -> None:
+    def require(self, session: Holder, what: str) -> None:
         """Raises CncError 26236 for a session that does not hold the command."""
         if self.holder is not session:
             held = "nobody holds it: take it" if self.holder is None else f"{self.holder.label} holds it"

@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import asyncio
-from typing import TYPE_CHECKING
 
+from cnc_ptp.web.page import Page
 from cnc_ptp.web.protocol import Message, answer, field
 from cnc_ptp.web.rights import require_role
-
-if TYPE_CHECKING:
-    from cnc_ptp.web.session import Session
 
 
 class CommissioningMessages:
     """Handles those of one page; all of them take the role commissioner."""
 
-    def __init__(self, session: Session) -> None:
+    def __init__(self, session: Page) -> None:
         self._session = session
         self._tasks = session.hub.tasks
         self.handlers = {

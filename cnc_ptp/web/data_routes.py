@@ -20,18 +20,20 @@ from cnc_ptp.web.numbers import A_RECORDING, BAD_MESSAGE
 from cnc_ptp.web.protocol import NOTHING, frame
 from cnc_ptp.web.recorded_face import RecordedFace
 from cnc_ptp.web.scope import read_signals
+from cnc_ptp.web.spindle_curve import spindle_curve
 
 NOT_STORED = {"Cache-Control": "no-store"}
 
 
 class DataRoutes:
-    """/api/parameters, /api/recorded"""
+    """/api/parameters, /api/curve, /api/recorded, /api/snapshot.mcap"""
 
     def __init__(self, hub: Hub, access: Access) -> None:
         self._hub, self._access = hub, access
 
     def add_to(self, app: web.Application) -> None:
         app.router.add_get("/api/parameters", self._parameters)
+        app.router.add_get("/api/curve", self._curve)
         app.router.add_get("/api/recorded", self._recorded)
         app.router.add_get("/api/snapshot.mcap", self._snapshot)
 
@@ -46,6 +48,15 @@ class DataRoutes:
         response = web.Response(text=text, content_type="application/json", headers=NOT_STORED)
         response.enable_compression()
         return response
+
+    async def _curve(self, request: web.Request) -> web.StreamResponse:
+        """`?spindle=s`: acceleration over speed of each gear."""
+        self._access.login_of(request)
+        face, spindle = self._hub.require_face(), request.query.get("spindle", "")
+        if face.kinds.get(spindle) != "spindle":
+            raise unknown_unit(spindle, [unit for unit, kind in face.kinds.items() if kind == "spindle"], "spindle")
+        gears = spindle_curve(face.sets[spindle], face.cycle_time)
+        return web.json_response({"spindle": spindle, "gears": gears}, headers=NOT_STORED)
 
     async def _recorded(self, request: web.Request) -> web.StreamResponse:
         """`?signals=x.set_position,…&from=s&to=s&points=N`: a frame as of the scope."""

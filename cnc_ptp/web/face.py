@@ -62,7 +62,7 @@ class Face(ABC):
         """Gives a command. Raises the refusal of the unit, and CncError 22001, 22002, 26111, 26136, 26171."""
 
     async def snapshot(self, file: str, seconds: float) -> None:
-        """The recorder writes its last seconds into a file; 0: all that it keeps. Raises CncError 26136."""
+        """The recorder writes its last seconds into a file; 0: all. Raises its refusal, CncError 26136, 26258."""
         effect = "nothing was written; run with --keep SECONDS"
         raise CncError(NO_SNAPSHOT, "snapshot: there is no recorder", effect)
 

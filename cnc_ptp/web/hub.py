@@ -156,6 +156,8 @@ class Hub:
         changes = difference(state, self._state)
         self._state = state
         for program in self.programs.changes(changes):
+            if self.sessions:
+                self.office.prepare()
             self.to_all({"type": "program", **program})
         for session in [*self.sessions]:
             session.end_without_login()

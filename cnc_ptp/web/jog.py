@@ -5,17 +5,14 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from cnc_ptp.client.faults import unknown_unit
 from cnc_ptp.errors import CncError
 from cnc_ptp.nodes.bridge.jog_topics import PATIENCE
 from cnc_ptp.web.numbers import JOG_ENDED
+from cnc_ptp.web.page import Page
 from cnc_ptp.web.protocol import Message, error_fields, field
 from cnc_ptp.web.rights import require_role
-
-if TYPE_CHECKING:
-    from cnc_ptp.web.session import Session
 
 LATE = 0.15
 """Seconds that a message may be late, measured against the quickest one of its page."""
@@ -36,7 +33,7 @@ class Jogs:
     the past (a socket that has stalled delivers everything at once), so that a new one needs a new press of the key.
     """
 
-    def __init__(self, session: Session, *, now: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, session: Page, *, now: Callable[[], float] = time.monotonic) -> None:
         self._session = session
         self._now = now
         self._held: dict[str, Press] = {}
@@ -45,7 +42,7 @@ class Jogs:
     def take(self, message: Message) -> None:
         """`jog`: axis, velocity (mm/s, deg/s), sequence, time (ms, of the page's clock).
 
-        Raises CncError 26111, 26233, 26235, 26236; a jog that has ended is told once (26243).
+        Raises CncError 26111, 26233, 26235, 26236; one message says that a jog has ended (26243).
         """
         axis, velocity = self._axis(message), field(message, "velocity", "number")
         sequence, sent = field(message, "sequence", "integer"), field(message, "time", "number")

@@ -27,7 +27,7 @@ class Login:
     """Against forged requests: pages of other origins cannot read it."""
     has_logged_out: bool = False
     is_machine: bool = False
-    """By a token that it sends with each request, and no browser by itself."""
+    """By a token that it sends with each request, it is no browser."""
 
 
 class Logins:

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Awaitable, Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from cnc_ptp.client.faults import unknown_unit
 from cnc_ptp.errors import CncError, nearest_name
 from cnc_ptp.web.commissioning_messages import CommissioningMessages
 from cnc_ptp.web.jog import Jogs
 from cnc_ptp.web.numbers import A_RECORDING, BAD_MESSAGE
+from cnc_ptp.web.page import Page
 from cnc_ptp.web.protocol import NOTHING, Message, answer, field
 from cnc_ptp.web.recorded_face import RecordedFace
 from cnc_ptp.web.rights import is_stop, require_page_command, require_role, role_for
 from cnc_ptp.web.scope import Stream, read_signals
-
-if TYPE_CHECKING:
-    from cnc_ptp.web.session import Session
 
 Answering = Awaitable[Message]
 
@@ -24,7 +22,7 @@ Answering = Awaitable[Message]
 class PageMessages:
     """Handles the messages of one page; what takes time is an awaitable of the answer."""
 
-    def __init__(self, session: Session) -> None:
+    def __init__(self, session: Page) -> None:
         self._session = session
         self._hub = session.hub
         self._jogs = Jogs(session)
@@ -115,7 +113,7 @@ class PageMessages:
     # the scope
 
     def _scope(self, message: Message) -> None:
-        """Signals in every cycle, from now on; those of before end."""
+        """Signals in every cycle, from now on; former ones end."""
         face = self._hub.require_face()
         signals = read_signals(field(message, "signals", "list"), face.kinds)
         self._streams += 1

@@ -116,7 +116,7 @@ class RecordedFace(Face):
     # what pages see
 
     def state(self) -> State:
-        """Of the last block that is over by now."""
+        """Of the last block that has ended by now."""
         blocks = {unit: block for unit in self.kinds if (block := self._block_at(unit)) is not None}
         states = unit_states(blocks)
         for channel, path in self._loaded().items():

@@ -88,11 +88,14 @@ class Server:
         if await self._is_own_page(socket, login):
             session = Session(self.hub, socket, self.access, login, number=next(NUMBERS))
             self.hub.add(session)
-            await session.run()
+            try:
+                await session.run()
+            finally:
+                self.hub.remove(session)
         return socket
 
     async def _is_own_page(self, socket: web.WebSocketResponse, login: Login) -> bool:
-        """Its first message is `hello` with its token; others are told why they are not wanted."""
+        """Its first message is `hello` with its token; others get the reason why they are not wanted."""
         try:
             first: Any = await socket.receive(FIRST_MESSAGE)
             message = read_message(first.data if first.type is WSMsgType.TEXT else "")

@@ -6,23 +6,21 @@ import asyncio
 from collections import deque
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from aiohttp import WSCloseCode, WSMsgType, web
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import CycleBlock
+from cnc_ptp.web.access import Access
 from cnc_ptp.web.face import State
 from cnc_ptp.web.logins import Login
 from cnc_ptp.web.numbers import SESSION_ENDED, TOO_MANY_MESSAGES
+from cnc_ptp.web.page import Shared
 from cnc_ptp.web.page_messages import PageMessages
 from cnc_ptp.web.protocol import Message, error_fields, frame, read_message, refusal
 from cnc_ptp.web.rate import Rate
 from cnc_ptp.web.scope import Stream
-
-if TYPE_CHECKING:
-    from cnc_ptp.web.access import Access
-    from cnc_ptp.web.hub import Hub
 
 MOST_PER_SECOND = 200
 BURST = 400
@@ -36,7 +34,9 @@ LONGEST_STALL = 10.0
 class Session:
     """A page. Its messages are handled in their order, but for commands, which wait for their answers beside."""
 
-    def __init__(self, hub: Hub, socket: web.WebSocketResponse, access: Access, login: Login, *, number: int) -> None:
+    def __init__(
+        self, hub: Shared, socket: web.WebSocketResponse, access: Access, login: Login, *, number: int
+    ) -> None:
         self.hub = hub
         self.user, self.role, self.number = login.user, login.role, number
         self._access, self._login = access, login
@@ -100,7 +100,6 @@ class Session:
             await self._read()
         finally:
             self._messages.end()
-            self.hub.remove(self)
             for task in [writer, *self._tasks]:
                 task.cancel()
 

@@ -103,7 +103,7 @@ def path_fields(block: ChannelBlock) -> dict[str, dict[str, Any]]:
 
 
 def unit_states(blocks: Mapping[str, CycleBlock]) -> dict[str, dict[str, Any]]:
-    """Unit -> fields; the plc has its life sign and whether its run is over."""
+    """Unit -> fields; the plc has its life sign and whether its run has ended."""
     states: dict[str, dict[str, Any]] = {}
     of_paths: dict[str, dict[str, Any]] = {}
     for unit, block in blocks.items():

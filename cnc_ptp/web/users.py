@@ -61,7 +61,7 @@ class Users:
             if self._file.stat().st_mtime != self._read_at:
                 self.read()
         except (CncError, OSError):
-            self._users, self._tokens = {}, {}  # nobody, rather than those of before
+            self._users, self._tokens = {}, {}  # nobody, rather than former users
             self._read_at = -1.0
 
     def role_of(self, name: str) -> str | None:

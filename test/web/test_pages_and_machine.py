@@ -2,7 +2,7 @@
 
 import asyncio
 
-from web_support import site
+from web_support import ROOT, site
 
 from cnc_ptp.web.backplot import HEAD
 
@@ -86,5 +86,19 @@ def test_zero_offsets_and_their_changes():
             rows = {row["index"]: row for row in (await page.ask("offsets"))["offsets"]}
             assert rows[2] == {"index": 2, "name": "G55", "values": {"X": 12.5, "Y": 0.0, "Z": 0.0}}
             assert rows[3]["values"] == {"X": None, "Y": None, "Z": None}
+
+    asyncio.run(story())
+
+
+def test_the_curve_of_a_spindle():
+    async def story():
+        async with site(str(ROOT / "config" / "spindle_curves.yaml")) as here:
+            await here.page()
+            machine = here.hub.face
+            spindle = next(unit for unit, kind in machine.kinds.items() if kind == "spindle")
+            told = await (await here.client.get("/api/curve", params={"spindle": spindle})).json()
+            points = told["gears"][0]["points"]
+            assert len(points) == 101 and points[0]["speed"] == 0.0
+            assert points[-1]["acceleration"] < points[0]["acceleration"]
 
     asyncio.run(story())

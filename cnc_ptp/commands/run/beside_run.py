@@ -21,7 +21,7 @@ END_TIME = 8.0
 
 
 class RunFiles(NamedTuple):
-    """What its pages are told of the run."""
+    """What its pages know of the run."""
 
     machine: str
     program: str | None = None

@@ -1,0 +1,55 @@
+"""What the messages of a page need of the page and of what all pages share."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Mapping
+from typing import Any, Protocol
+
+from cnc_ptp.web.alarms import Alarms
+from cnc_ptp.web.command_right import CommandRight
+from cnc_ptp.web.face import Face
+from cnc_ptp.web.offset_table import OffsetTable
+from cnc_ptp.web.program_watch import ProgramWatch
+from cnc_ptp.web.programs import ProgramFolder
+from cnc_ptp.web.scope import Stream
+from cnc_ptp.web.tasks import Tasks
+
+
+class Shared(Protocol):
+    """The machine, and what belongs to all pages: the hub."""
+
+    face: Face | None
+    right: CommandRight
+    alarms: Alarms
+    folder: ProgramFolder
+    programs: ProgramWatch
+    tables: dict[str, OffsetTable]
+    tasks: Tasks
+
+    def require_face(self) -> Face: ...
+
+    def to_all(self, message: Mapping[str, Any]) -> None: ...
+
+    def tell_operator(self) -> None: ...
+
+    def keep(self, task: asyncio.Task[None]) -> None: ...
+
+
+class Page(Protocol):
+    """One page: its session."""
+
+    @property
+    def hub(self) -> Shared: ...
+
+    user: str
+    role: str
+    number: int
+    scope: Stream | None
+
+    @property
+    def label(self) -> str: ...
+
+    def shown(self) -> dict[str, Any]: ...
+
+    def send(self, message: Mapping[str, Any]) -> None: ...

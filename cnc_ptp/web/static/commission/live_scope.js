@@ -1,0 +1,21 @@
+// A scope beside a test: fixed signals, one graph for each group.
+import { Capture } from "../scope/capture.js";
+import { Picture } from "../scope/picture.js";
+
+/** `signals`: [name, graph]. Gives the capture, the element and what ends it. */
+export function liveScope(app, signals, { window = 5, height = 190 } = {}) {
+  const capture = new Capture(app);
+  capture.window = window;
+  capture.channels = signals.map(([name, graph]) => ({ name, graph }));
+  const picture = new Picture(app, capture, { height, extras: false });
+  capture.subscribe().then(() => picture.rebuild());
+  return {
+    capture,
+    picture,
+    element: picture.element,
+    end() {
+      picture.end();
+      capture.end();
+    },
+  };
+}

@@ -1,0 +1,73 @@
+// PTP test: an axis goes to and fro between two positions, with the scope beside.
+import { button, field, h, panel, press, say, toggle } from "../dom.js";
+import { liveScope } from "./live_scope.js";
+
+const PAUSE = 300; // ms at each end
+
+export function ptpTest(app, unit) {
+  const { store } = app;
+  const [low, high] = unit.limits?.positions || [];
+  const numbers = {
+    first: ["Position 1", clamp(0, low, high)], second: ["Position 2", clamp(50, low, high)], velocity: ["Velocity", ""], acceleration: ["Acceleration", ""], deceleration: ["Deceleration", ""], jerk: ["Jerk", ""],
+  };
+  const inputs = Object.fromEntries(Object.entries(numbers).map(([name, [, value]]) => [name, h("input", { type: "number", step: "any", value })]));
+  const override = h("input", { type: "number", min: 0, max: unit.limits?.override || 200, step: 1, value: 100 });
+  override.addEventListener("change", () => app.command(unit.name, "set_override", { percent: Number(override.value) }));
+  const status = h("p", { class: "muted", role: "status" }, "Not started.");
+  const repeat = toggle("Repeat", (on) => press(repeat, on));
+  const scope = liveScope(app, [[`${unit.name}.set_position`, 1], [`${unit.name}.actual_position`, 1], [`${unit.name}.set_velocity`, 2], [`${unit.name}.following_error`, 3]]);
+  let active = false;
+
+  async function start() {
+    if (active) return;
+    active = true;
+    let strokes = 0;
+    const repeats = () => repeat.getAttribute("aria-pressed") === "true";
+    do {
+      for (const name of ["first", "second"]) {
+        if (!active || !(await stroke(Number(inputs[name].value)))) return finish();
+        strokes += 1;
+        say(status, `${strokes} strokes`);
+      }
+    } while (active && repeats());
+    finish();
+  }
+
+  /** Whether the axis has arrived. */
+  async function stroke(target) {
+    const given = ["velocity", "acceleration", "deceleration", "jerk"].filter((name) => inputs[name].value !== "");
+    const args = { target, ...Object.fromEntries(given.map((name) => [name, Number(inputs[name].value)])) };
+    if (!(await app.command(unit.name, "move_absolute", args))) return false;
+    await pause(PAUSE);
+    while (active && /Motion|Stopping/.test(store.state(unit.name).state || "")) await pause(50);
+    await pause(PAUSE);
+    return store.state(unit.name).state === "Standstill";
+  }
+
+  function finish() {
+    active = false;
+  }
+  const stop = () => {
+    finish();
+    app.command(unit.name, "halt");
+  };
+  const element = h(
+    "div", { class: "beside" },
+    panel(
+      "To and fro",
+      h("fieldset", { class: "commands" }, h("div", { class: "row end" }, Object.entries(numbers).map(([name, [text]]) => field(text, inputs[name])), field("Override in %", override)), h("div", { class: "row" }, button("Start", start, { class: "primary" }), repeat)),
+      h("div", { class: "row" }, button("Stop", stop)), status,
+    ),
+    scope.element,
+  );
+  return {
+    element,
+    end() {
+      if (active) stop();
+      scope.end();
+    },
+  };
+}
+
+const clamp = (value, low, high) => Math.min(Math.max(value, low ?? -Infinity), high ?? Infinity);
+const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));

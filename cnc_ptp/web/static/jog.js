@@ -1,0 +1,97 @@
+// Jogs: one message each 50 ms while a key or button is held. Every way in which a key may be lost ends them.
+
+const PERIOD = 50; // ms
+const LATEST = 170; // ms between two messages; the axis ends its jog by itself after 200
+
+export class Jogger {
+  constructor(app) {
+    this.app = app;
+    this._held = new Map();
+    this._listeners = new Set();
+    const stop = () => this.stopAll();
+    for (const name of ["blur", "pagehide", "beforeunload", "freeze"]) window.addEventListener(name, stop);
+    document.addEventListener("visibilitychange", stop);
+    app.store.on("link", stop);
+    app.store.on("operator", () => app.store.holds || this.stopAll());
+    app.store.on("jog_ended", (message) => this._ended(message));
+  }
+
+  /** Notified with an axis and its velocity, 0 at the end. */
+  onChange(listener) {
+    this._listeners.add(listener);
+    return () => this._listeners.delete(listener);
+  }
+
+  /** Begins a jog (mm/s, deg/s). Without the command nothing is sent. */
+  start(axis, velocity) {
+    const { store, notices } = this.app;
+    if (this._held.has(axis) || velocity === 0 || document.hidden) return;
+    if (!store.holds) {
+      notices.show("warning", "This page does not hold the command.", "Take the command first.");
+      return;
+    }
+    const jog = { velocity, sequence: 0, sent: performance.now(), timer: 0 };
+    this._held.set(axis, jog);
+    this._beat(axis, jog);
+    jog.timer = setInterval(() => this._beat(axis, jog), PERIOD);
+    this._tell(axis, velocity);
+  }
+
+  _beat(axis, jog) {
+    const now = performance.now();
+    const late = now - jog.sent > LATEST;
+    jog.sent = now;
+    jog.sequence += 1;
+    const sent = !late && this.app.connection.send({ type: "jog", axis, velocity: jog.velocity, sequence: jog.sequence, time: now });
+    if (!sent) this.stop(axis);
+  }
+
+  stop(axis) {
+    const jog = this._held.get(axis);
+    if (!jog) return;
+    this._forget(axis, jog);
+    this.app.connection.send({ type: "jog", axis, velocity: 0, sequence: jog.sequence + 1, time: performance.now() });
+    this.app.connection.send({ type: "jog_stop", axis });
+  }
+
+  stopAll() {
+    for (const axis of [...this._held.keys()]) this.stop(axis);
+  }
+
+  _ended(message) {
+    const jog = this._held.get(message.axis);
+    if (jog) this._forget(message.axis, jog);
+    this.app.notices.show("warning", message.text, message.remedy);
+  }
+
+  _forget(axis, jog) {
+    clearInterval(jog.timer);
+    this._held.delete(axis);
+    this._tell(axis, 0);
+  }
+
+  _tell(axis, velocity) {
+    for (const listener of this._listeners) listener(axis, velocity);
+  }
+
+  /** Makes a button one that is held; `velocity` is asked when it is pressed. */
+  bind(element, axis, velocity) {
+    const begin = () => this.start(axis, velocity());
+    const end = () => this.stop(axis);
+    element.addEventListener("pointerdown", (event) => {
+      if (event.button !== 0) return;
+      element.setPointerCapture(event.pointerId);
+      begin();
+    });
+    for (const name of ["pointerup", "pointercancel", "lostpointercapture", "blur"]) element.addEventListener(name, end);
+    element.addEventListener("contextmenu", (event) => event.preventDefault());
+    element.addEventListener("keydown", (event) => {
+      if (event.key !== " " && event.key !== "Enter") return;
+      event.preventDefault();
+      if (!event.repeat) begin();
+    });
+    element.addEventListener("keyup", (event) => {
+      if (event.key === " " || event.key === "Enter") end();
+    });
+  }
+}

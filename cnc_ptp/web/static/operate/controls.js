@@ -1,0 +1,74 @@
+// Start, feed hold, resume, single block, skip, optional stop, reset; and their keys.
+import { button, h, panel, press, say, toggle } from "../dom.js";
+import { duration } from "../format.js";
+
+const SWITCHES = [["single_block", "Single block"], ["block_skip", "Block skip"], ["optional_stop", "Optional stop"]];
+
+export function controls(app) {
+  const { store } = app;
+  const channel = () => store.channel;
+  const start = button("Start", () => app.command(channel(), "start"), { class: "primary" });
+  const hold = toggle("Feed hold", (on) => app.command(channel(), "feed_hold", { enabled: on }));
+  const reset = button("Reset", () => resetAll(app));
+  const switches = SWITCHES.map(([name, text]) => toggle(text, (on) => setSwitch(app, name, on), { dataset: { switch: name } }));
+  const progress = h("progress", { max: 1, "aria-label": "Progress of the program" });
+  const line = h("p", { class: "muted", role: "status" });
+  const element = panel(
+    "Control",
+    h("div", { class: "row" }, h("fieldset", { class: "commands" }, h("div", { class: "row" }, start)), hold, reset, h("fieldset", { class: "commands" }, h("div", { class: "row" }, switches))),
+    progress, line,
+  );
+
+  function update() {
+    const state = store.state(channel());
+    say(start, ["hold", "stopped"].includes(state.state) ? "Resume" : "Start");
+    press(hold, state.feed_hold ?? state.state === "hold");
+    for (const one of switches) if (state[one.dataset.switch] !== undefined) press(one, state[one.dataset.switch]);
+    progress.value = state.progress || 0;
+    const left = state.time_left >= 0 ? `${duration(state.time_left)} left` : "time left not known";
+    say(line, state.active ? `${state.state} · line ${state.line} · ${Math.round((state.progress || 0) * 100)} % · ${left}` : state.state || "no channel");
+  }
+  const end = store.on("state", update);
+  update();
+  return { element, end };
+}
+
+/** The server may not report it; then the button shows what was commanded. */
+async function setSwitch(app, name, enabled) {
+  const answer = await app.command(app.store.channel, name, { enabled });
+  const element = document.querySelector(`[data-switch="${name}"]`);
+  if (answer && element) press(element, enabled);
+}
+
+/** The channel, and every axis and spindle that is in error. */
+async function resetAll(app) {
+  const { store } = app;
+  if (store.channel) await app.command(store.channel, "reset");
+  for (const unit of [...store.of("axis"), ...store.of("spindle")]) {
+    if (store.state(unit.name).state === "ErrorStop") await app.command(unit.name, "reset");
+  }
+}
+
+/** F7, F8, F9, Ctrl+↑, Ctrl+↓. */
+export function keys(app) {
+  const { store } = app;
+  const acts = {
+    F7: () => toggleSwitch("single_block"),
+    F8: () => app.command(store.channel, "feed_hold", { enabled: store.state(store.channel).state !== "hold" }),
+    F9: () => app.command(store.channel, store.state(store.channel).state === "hold" ? "feed_hold" : "start", store.state(store.channel).state === "hold" ? { enabled: false } : {}),
+  };
+  const toggleSwitch = (name) => document.querySelector(`[data-switch="${name}"]`)?.click();
+
+  function act(event) {
+    if (event.repeat || document.querySelector("dialog[open]")) return;
+    const step = event.ctrlKey && { ArrowUp: 5, ArrowDown: -5 }[event.key];
+    if (step) {
+      const now = store.state(store.channel).override ?? 100;
+      app.command(store.channel, "set_override", { percent: Math.max(0, now + step) });
+    } else if (acts[event.key]) acts[event.key]();
+    else return;
+    event.preventDefault();
+  }
+  document.addEventListener("keydown", act);
+  return () => document.removeEventListener("keydown", act);
+}

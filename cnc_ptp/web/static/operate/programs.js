@@ -1,0 +1,73 @@
+// Programs of the server's folder: list, text, upload, load.
+
+const EXISTS = 26257; // the number of a name that is taken
+
+export async function listPrograms(app) {
+  const answer = await app.attempt(app.connection.http("/api/programs"));
+  return answer?.programs || [];
+}
+
+/** The text of a program; null after a refusal, which is shown. */
+export function readProgram(app, name) {
+  return app.attempt(app.connection.http(`/api/programs/${encodeURIComponent(name)}`, { as: "text" }));
+}
+
+export async function loadProgram(app, name) {
+  return app.request("load", { channel: app.store.channel, name });
+}
+
+/** Uploads a file and loads it. */
+export async function upload(app, file) {
+  const path = `/api/programs?name=${encodeURIComponent(file.name)}`;
+  const send = (how) => app.connection.http(path + how, { method: "POST", body: file, headers: { "Content-Type": "text/plain" } });
+  let answer;
+  try {
+    answer = await send("");
+  } catch (error) {
+    const replaces = error.number === EXISTS && window.confirm(`${file.name} is in the program folder already. Replace it?`);
+    answer = replaces ? await app.attempt(send("&replace=1")) : error.number === EXISTS ? null : app.notices.refused(error);
+  }
+  if (!answer) return false;
+  app.notices.show("info", `${answer.name ?? file.name} is uploaded.`);
+  return Boolean(await loadProgram(app, answer.name ?? file.name));
+}
+
+/** Files may be dropped on an element. */
+export function takeDrops(element, take) {
+  const over = (on) => (event) => {
+    event.preventDefault();
+    element.classList.toggle("drop", on);
+  };
+  element.addEventListener("dragover", over(true));
+  element.addEventListener("dragleave", over(false));
+  element.addEventListener("drop", (event) => {
+    over(false)(event);
+    const file = event.dataTransfer?.files[0];
+    if (file) take(file);
+  });
+}
+
+/** Follows the program of the channel: `show(text)` for each new one; returns what ends that. */
+export function followProgram(app, show) {
+  const { store } = app;
+  let shown = null;
+  const look = async () => {
+    const name = programName(store);
+    if (!name || name === shown) return;
+    shown = name;
+    const text = await readProgram(app, name);
+    if (text !== null && shown === name) show(text, name);
+  };
+  const again = () => {
+    shown = null;
+    look();
+  };
+  const ends = [store.on("program", again), store.on("state", look)];
+  look();
+  return () => ends.forEach((end) => end());
+}
+
+export function programName(store) {
+  const path = store.state(store.channel).program || "";
+  return store.programs[store.channel]?.name ?? path.split("/").pop();
+}

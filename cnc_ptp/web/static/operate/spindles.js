@@ -1,0 +1,77 @@
+// Spindle panel: speed, direction, gear, mode, orientation, coupling.
+import { button, field, h, panel, reading, select } from "../dom.js";
+import { fixed } from "../format.js";
+
+export function spindles(app) {
+  const { store } = app;
+  const views = store.of("spindle").map((unit) => view(app, unit));
+  const element = h("div", { class: "stack" }, views.map((one) => one.element), tool(app).element);
+  const update = () => views.forEach((one) => one.update(store.state(one.name)));
+  const end = store.on("state", update);
+  update();
+  return { element, end };
+}
+
+function number(value, attributes = {}) {
+  return h("input", { type: "number", value, step: "any", ...attributes });
+}
+
+function view(app, { name }) {
+  const list = h("div", { class: "readings" });
+  const [set, actual, programmed, gear, mode, state] = [
+    reading(list, "Set", "rpm"), reading(list, "Actual", "rpm"), reading(list, "Programmed", "rpm"), reading(list, "Gear"), reading(list, "Mode"), reading(list, "State"),
+  ];
+  const [position, master] = [reading(list, "Position", "°"), reading(list, "Coupled to")];
+  const speed = number(1000, { min: 0 });
+  const angle = number(0);
+  const stage = select(["1", "2", "3", "4", "5", "6"]);
+  const others = app.store.of("spindle").filter((one) => one.name !== name).map((one) => one.name);
+  const partner = select(others);
+  const give = (command, args) => () => app.command(name, command, args ? args() : {});
+  const start = (direction) => give("start", () => ({ direction, speed_rpm: Number(speed.value) }));
+  const element = panel(
+    `Spindle ${name}`, list,
+    h("div", { class: "row" }, button("Stop", give("stop"))),
+    h("fieldset", { class: "commands" },
+      h("div", { class: "row end" }, field("Speed in rpm", speed), button("↻ cw", start("cw")), button("↺ ccw", start("ccw")), button("Set speed", give("set_speed", () => ({ speed_rpm: Number(speed.value) })))),
+      h("details", {}, h("summary", {}, "Orient, gear, coupling"),
+        h("div", { class: "row end" }, field("Angle in °", angle), button("Orient", give("orient", () => ({ position_deg: Number(angle.value) }))), button("Home", give("home"))),
+        h("div", { class: "row end" }, field("Gear", stage), button("Select gear", give("select_gear", () => ({ stage: Number(stage.value) }))), button("Gear changed", give("gear_changed"))),
+        others.length > 0 && h("div", { class: "row end" }, field("Master", partner), button("Couple", give("couple", () => ({ master: partner.value }))), button("Decouple", give("decouple"))),
+        h("div", { class: "row" }, button("Enable", give("power", () => ({ enabled: true }))), button("Disable", give("power", () => ({ enabled: false })))),
+      ),
+    ),
+  );
+  return {
+    name,
+    element,
+    update(now) {
+      set(fixed(now.set_speed, 1));
+      actual(fixed(now.speed, 1));
+      programmed(fixed(now.programmed_speed, 1));
+      gear(now.gear || "–");
+      mode((now.modes || []).join(", ") || "–");
+      state(now.state || "–");
+      position(fixed(modulo(now.actual_position), 2));
+      master(now.master || "–");
+    },
+  };
+}
+
+const modulo = (angle) => (typeof angle === "number" ? ((angle % 360) + 360) % 360 : angle);
+
+function tool(app) {
+  const list = h("div", { class: "readings" });
+  const [t, d] = [reading(list, "Tool (T)"), reading(list, "Compensation (D)")];
+  const numbers = { T: "–", D: "–" };
+  app.store.on("handshake", (request) => {
+    if (request.kind in numbers) numbers[request.kind] = request.number;
+  });
+  const update = () => {
+    const state = app.store.state(app.store.channel);
+    t(state.tool ?? numbers.T);
+    d(state.compensation ?? numbers.D);
+  };
+  app.store.on("state", update);
+  return { element: panel("Tool", list) };
+}

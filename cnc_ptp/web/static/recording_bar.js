@@ -1,0 +1,60 @@
+// The time of a recording: where it is shown, and playing it. The server keeps the time, for all pages that look at it.
+import { button, h, press, say, select } from "./dom.js";
+import { fixed } from "./format.js";
+
+const PERIOD = 250; // ms between two looks of the scope while it plays
+const HELD = 400; // ms after which the slider follows the server again
+
+export function recordingBar(app) {
+  const { store } = app;
+  const slider = h("input", { type: "range", step: "0.001", "aria-label": "Time of the recording in s" });
+  const shown = h("output", { class: "number" });
+  const speed = select([["0.1", "× 0.1"], ["0.5", "× 0.5"], ["1", "× 1"], ["5", "× 5"], ["20", "× 20"]], { "aria-label": "Speed of playing" });
+  speed.value = "1";
+  const play = button("Play", () => setSpeed(isPlaying ? 0 : Number(speed.value)), { "aria-pressed": "false" });
+  const bar = h("footer", { class: "recording-bar", hidden: true, "aria-label": "Recording" }, play, speed, slider, shown);
+  let [isPlaying, touched, told] = [false, -Infinity, -Infinity];
+
+  async function seek() {
+    touched = performance.now();
+    show(Number(slider.value));
+    if (await app.request("seek", { time: Number(slider.value) })) store.tell("seek", Number(slider.value));
+  }
+
+  async function setSpeed(wanted) {
+    if (!(await app.request("play", { speed: wanted }))) return;
+    isPlaying = wanted > 0;
+    press(play, isPlaying);
+    say(play, isPlaying ? "Pause" : "Play");
+  }
+
+  function show(time) {
+    say(shown, `${fixed(time, 3)} s of ${fixed(store.machine.end, 1)} s`);
+  }
+
+  function follow() {
+    if (bar.hidden || performance.now() - touched < HELD || Number(slider.value) === store.time) return;
+    slider.value = store.time;
+    show(store.time);
+    const now = performance.now();
+    if (now - told > PERIOD) {
+      told = now;
+      store.tell("seek", store.time);
+    }
+    if (isPlaying && store.time >= store.machine.end) setSpeed(0);
+  }
+
+  slider.addEventListener("change", seek);
+  slider.addEventListener("input", () => performance.now() - touched > PERIOD && seek());
+  speed.addEventListener("change", () => isPlaying && setSpeed(Number(speed.value)));
+  store.on("state", follow);
+  store.on("hello", () => {
+    bar.hidden = !store.machine?.recording;
+    if (bar.hidden) return;
+    slider.min = store.machine.start ?? 0;
+    slider.max = store.machine.end ?? 0;
+    slider.value = slider.min;
+    show(Number(slider.min));
+  });
+  return bar;
+}

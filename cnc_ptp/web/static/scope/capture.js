@@ -1,0 +1,187 @@
+// What the scope has caught: samples of the server and math channels in one ring, the trigger, and the piece that is shown.
+import { formula } from "./expression.js";
+import { drawn, readFrame, readRecorded, Ring } from "./samples.js";
+import { Trigger } from "./trigger.js";
+
+const [SECONDS, MOST_SAMPLES] = [120, 500000]; // that a ring holds
+
+export class Capture {
+  constructor(app) {
+    this.app = app;
+    this.channels = []; // {name, graph, formula?}
+    this.window = 2; // s
+    this.pre = 0.2; // share of the window before the trigger
+    this.mode = "off"; // off, normal, single
+    this.source = "";
+    this.trigger = new Trigger();
+    this.held = null; // {ring, from, to, zero}
+    this.isFrozen = false;
+    this.ring = new Ring(0, 1);
+    this.version = 0;
+    this._columns = [];
+    this._stream = -1;
+    this._turn = 0;
+    this._end = app.store.on("event", (event) => this.mode !== "off" && this.trigger.takeEvent(event) && this._fired());
+    app.connection.onBinary = (data) => this._take(data);
+  }
+
+  get cycleTime() {
+    return this.app.store.machine?.cycle_time || 0.001;
+  }
+
+  get isRecording() {
+    return Boolean(this.app.store.machine?.recording);
+  }
+
+  /** Asks for the signals of all channels anew; what was caught is gone. Throws Error for a formula that is none. */
+  async subscribe() {
+    const turn = ++this._turn;
+    const formulas = this.channels.map((channel) => (channel.formula ? formula(channel.formula) : null));
+    const needed = new Set();
+    this.channels.forEach((channel, i) => (formulas[i] ? formulas[i].names : [channel.name]).forEach((name) => needed.add(name)));
+    this._formulas = formulas;
+    this._names = [...needed].filter((name) => !this.channels.some((channel) => channel.formula && channel.name === name));
+    this._step = 1;
+    this._fresh();
+    if (this._names.length === 0) {
+      this.app.connection.send({ type: "scope_stop" });
+      return;
+    }
+    if (this.isRecording) return;
+    const answer = await this.app.request("scope", { signals: this._names });
+    if (!answer || turn !== this._turn) return;
+    this._stream = answer.stream;
+  }
+
+  _fresh() {
+    const count = this.channels.length;
+    this._stream = -1;
+    this.ring = new Ring(count, Math.min(Math.round(SECONDS / this.cycleTime), Math.floor(MOST_SAMPLES / Math.max(1, count)) + 1000));
+    this.held = null;
+    this.isFrozen = false;
+    this.trigger.arm();
+    this.version += 1;
+  }
+
+  _take(data) {
+    let frame;
+    try {
+      frame = readFrame(data);
+    } catch (error) {
+      this.app.notices.refused(error);
+      return;
+    }
+    if (frame.stream === this._stream) this._push(frame);
+  }
+
+  _push(frame) {
+    const known = new Map(this._names.map((name, i) => [name, frame.columns[i]]));
+    const columns = this.channels.map((channel, i) => {
+      const values = this._formulas[i] ? this._formulas[i].evaluate(known, frame.count, this.cycleTime * frame.step) : known.get(channel.name);
+      known.set(channel.name, values);
+      return values;
+    });
+    this.ring.push(Math.round(frame.cycle / frame.step), columns, frame.count);
+    this._step = frame.step;
+    this.version += 1;
+    if (this.mode === "off" || this.isFrozen) return;
+    const source = this.channels.findIndex((channel) => channel.name === this.source);
+    if (source >= 0 && this.trigger.takeSamples(frame.cycle, columns[source])) this._fired();
+    this._hold();
+  }
+
+  /** The piece of a recording around a time (s). */
+  async read(time) {
+    if (!this._names?.length) return;
+    const turn = this._turn;
+    const { start = 0, end = 0 } = this.app.store.machine;
+    const from = Math.max(start, Math.min(time - this.window / 2, end - this.window));
+    const path = `/api/recorded?signals=${encodeURIComponent(this._names.join(","))}&from=${from}&to=${Math.min(end, from + this.window)}&points=2000`;
+    const bytes = await this.app.attempt(this.app.connection.http(path, { as: "bytes" }));
+    if (!bytes || turn !== this._turn) return;
+    const frame = readRecorded(bytes);
+    this._formulas = this.channels.map((channel) => (channel.formula ? formula(channel.formula) : null));
+    this.ring.clear();
+    this._push(frame);
+  }
+
+  // the trigger
+
+  arm(options) {
+    this.trigger = new Trigger(options);
+    this.held = null;
+    this.isFrozen = false;
+    this.version += 1;
+  }
+
+  _fired() {
+    this.firedAt = this.trigger.cycle;
+    this.version += 1;
+  }
+
+  /** Keeps the piece around a trigger once all of it is there. */
+  _hold() {
+    const { cycle } = this.trigger;
+    if (cycle === null) return;
+    const cycles = Math.round(this.window / this.cycleTime);
+    const from = cycle - Math.round(this.pre * cycles);
+    if (this.ring.end < from + cycles) return;
+    this.held = { ring: this.ring.copy(), from, to: from + cycles, zero: cycle };
+    if (this.mode === "single") this.isFrozen = true;
+    else this.trigger.arm();
+  }
+
+  freeze(on) {
+    this.isFrozen = on;
+    if (on) this.held = this.shown(true);
+    else {
+      this.held = null;
+      this.trigger.arm();
+    }
+    this.version += 1;
+  }
+
+  /** What is shown: a ring, the cycles from and to, and the cycle that counts as 0 s. */
+  shown(asCopy = false) {
+    if (this.held) return this.held;
+    const cycles = Math.max(2, Math.round(this.window / (this.cycleTime * this._step)));
+    const ring = asCopy ? this.ring.copy() : this.ring;
+    return { ring, from: Math.max(ring.begin, ring.end - cycles), to: ring.end, zero: 0 };
+  }
+
+  get sampleTime() {
+    return this.cycleTime * (this._step || 1);
+  }
+
+  /** Times (s) and values of channels for a graph of so many pixels; null at what is missing. */
+  data(indices, pixels, range = null) {
+    const { ring, from, to, zero } = this.shown();
+    const [first, behind] = range ? [range[0] / this.sampleTime + zero, range[1] / this.sampleTime + zero] : [from, to];
+    const [cycles, ...columns] = drawn(ring, indices, first, behind, pixels);
+    return [Array.from(cycles, (cycle) => (cycle - zero) * this.sampleTime), ...columns.map((column) => Array.from(column, (value) => (Number.isNaN(value) ? null : value)))];
+  }
+
+  /** The samples of a channel between two times (s) of the picture. */
+  between(index, begin, end) {
+    const { ring, zero } = this.shown();
+    return ring.slice(index, Math.round(begin / this.sampleTime) + zero, Math.round(end / this.sampleTime) + zero + 1);
+  }
+
+  valueAt(index, time) {
+    const { ring, zero } = this.shown();
+    return ring.at(index, Math.round(time / this.sampleTime) + zero);
+  }
+
+  /** First and last time (s) of the picture. */
+  get range() {
+    const { from, to, zero } = this.shown();
+    return [(from - zero) * this.sampleTime, (to - zero) * this.sampleTime];
+  }
+
+  end() {
+    this._turn += 1;
+    this._end();
+    this.app.connection.onBinary = () => {};
+    this.app.connection.send({ type: "scope_stop" });
+  }
+}

@@ -1,0 +1,132 @@
+// What the pages know of the machine; views are notified by topic.
+
+const KEPT_EVENTS = 500;
+
+export class Store {
+  constructor() {
+    this.link = "connecting"; // connecting, open, closed, login
+    this.user = "";
+    this.role = "viewer";
+    this.page = 0;
+    this.machine = null;
+    this.why = null;
+    this.time = 0;
+    this.units = {};
+    this.operator = { holder: null, asking: null };
+    this.alarms = [];
+    this.events = [];
+    this.handshakes = new Map();
+    this.programs = {};
+    this.offsets = {};
+    this.nodes = new Map();
+    this._listeners = new Map();
+  }
+
+  /** Calls `listener` at each message of a topic; returns what ends that. */
+  on(topic, listener) {
+    if (!this._listeners.has(topic)) this._listeners.set(topic, new Set());
+    this._listeners.get(topic).add(listener);
+    return () => this._listeners.get(topic).delete(listener);
+  }
+
+  tell(topic, detail) {
+    for (const listener of [...(this._listeners.get(topic) || [])]) listener(detail);
+  }
+
+  setLink(link) {
+    this.link = link;
+    this.tell("link", link);
+  }
+
+  /** A message of the server. */
+  take(message) {
+    const handler = HANDLERS[message.type];
+    if (handler) handler(this, message);
+    this.tell(message.type, message);
+  }
+
+  of(kind) {
+    return (this.machine?.units || []).filter((unit) => unit.kind === kind);
+  }
+
+  unit(name) {
+    return (this.machine?.units || []).find((unit) => unit.name === name) || null;
+  }
+
+  state(name) {
+    return this.units[name] || {};
+  }
+
+  get channel() {
+    return this.of("channel")[0]?.name || "";
+  }
+
+  /** Whether this page holds the command. */
+  get holds() {
+    const holder = this.operator.holder;
+    return Boolean(holder) && (this.page ? holder.page === this.page : holder.user === this.user);
+  }
+
+  get inEmergency() {
+    const known = this.units.plc?.emergency_stop;
+    return known ?? Object.values(this.units).some((unit) => unit.error === 26168);
+  }
+}
+
+const HANDLERS = {
+  hello(store, message) {
+    Object.assign(store, { user: message.user, role: message.role, page: message.page || message.session || 0 });
+    Object.assign(store, { machine: message.machine || null, why: message.why || null, units: {}, events: [] });
+    if (message.operator) store.operator = message.operator;
+    store.alarms = message.alarms || [];
+    store.handshakes = new Map((message.handshakes || []).map((request) => [request.id, request]));
+    store.programs = Object.fromEntries((message.programs || []).map((program) => [program.channel, program]));
+    store.offsets = message.offsets || {};
+    store.nodes.clear();
+    store.tell("alarms");
+    store.tell("operator");
+  },
+  state(store, message) {
+    store.time = message.time;
+    for (const [name, fields] of Object.entries(message.units)) store.units[name] = { ...store.units[name], ...fields };
+  },
+  event(store, message) {
+    store.events.push(message);
+    if (store.events.length > KEPT_EVENTS) store.events.shift();
+    if (message.alarm === undefined) return;
+    store.alarms.push(message);
+    store.tell("alarms");
+  },
+  alarms(store, message) {
+    if (message.alarms) store.alarms = message.alarms;
+  },
+  acknowledged(store, message) {
+    const numbers = new Set(message.alarms);
+    for (const alarm of store.alarms) if (numbers.has(alarm.alarm)) Object.assign(alarm, { acknowledged: true, acknowledged_by: message.user });
+    store.tell("alarms");
+  },
+  operator(store, message) {
+    store.operator = { holder: message.holder, asking: message.asking };
+  },
+  handshake(store, message) {
+    store.handshakes.set(message.id, message);
+    store.tell("handshakes");
+  },
+  handshake_done(store, message) {
+    store.handshakes.delete(message.id);
+    store.tell("handshakes");
+  },
+  program(store, message) {
+    store.programs[message.channel || store.channel] = message;
+  },
+  offsets(store, message) {
+    store.offsets[message.channel] = message;
+  },
+  diagnostics(store, message) {
+    for (const node of message.nodes || []) store.nodes.set(node.name, { ...store.nodes.get(node.name), ...node });
+  },
+  gone(store, message) {
+    store.why = message;
+    store.machine = null;
+  },
+};

@@ -1,0 +1,217 @@
+"""Operate: jog that always ends, program, overrides, MDI, handshakes."""
+
+from itertools import pairwise
+
+import pytest
+
+LOST = {
+    "pointerup": "() => 0",
+    "blur of the page": "() => window.dispatchEvent(new Event('blur'))",
+    "visibilitychange": "() => document.dispatchEvent(new Event('visibilitychange'))",
+    "pagehide": "() => window.dispatchEvent(new Event('pagehide'))",
+    "pointercancel": "() => document.querySelector('[data-jog=x]').dispatchEvent(new PointerEvent('pointercancel'))",
+    "lost capture": "() => document.querySelector('[data-jog=x]').dispatchEvent(new PointerEvent('lostpointercapture'))",
+    "another page": "() => { location.hash = 'watch'; }",
+    "the command is lost": "() => app.store.take({type: 'operator', holder: {user: 'anna', page: 99}, asking: null}) || app.store.tell('operator')",
+}
+
+
+def jogs(fake):
+    return [message for message in fake.received if message["type"] == "jog" and message["velocity"] != 0]
+
+
+def wait_for(page, condition):
+    for _ in range(200):
+        if condition():
+            return
+        page.wait_for_timeout(20)
+    raise AssertionError("it did not happen in 4 s")
+
+
+def press_jog(page, name="Jog X −"):
+    box = page.locator(f"[aria-label='{name}']").bounding_box()
+    page.mouse.move(box["x"] + 10, box["y"] + 10)
+    page.mouse.down()
+
+
+@pytest.mark.parametrize("how", LOST)
+def test_a_jog_ends_however_its_key_is_lost(look, fake, how):
+    page = look(command=True)
+    press_jog(page)
+    wait_for(page, lambda: len(jogs(fake)) >= 4)
+    if how == "pointerup":
+        page.mouse.up()
+    page.evaluate(LOST[how])
+    wait_for(page, lambda: any(message["type"] == "jog_stop" for message in fake.received))
+    sent = jogs(fake)
+    assert [message["sequence"] for message in sent] == [*range(1, len(sent) + 1)]
+    assert {(message["axis"], message["velocity"]) for message in sent} == {("x", -16.6)}
+    page.wait_for_timeout(300)
+    assert jogs(fake) == sent
+    last = [message for message in fake.received if message["type"].startswith("jog")][-2:]
+    assert [message["type"] for message in last] == ["jog", "jog_stop"]
+    assert last[0]["velocity"] == 0
+    page.mouse.up()
+
+
+def test_jog_messages_come_every_50_ms(look, fake):
+    page = look(command=True)
+    press_jog(page, "Jog Y +")
+    wait_for(page, lambda: len(jogs(fake)) >= 20)
+    page.mouse.up()
+    times = [message["time"] for message in jogs(fake)]
+    steps = sorted(later - earlier for earlier, later in pairwise(times))
+    assert 45 <= steps[len(steps) // 2] <= 70
+
+
+def test_without_the_command_nothing_is_jogged(look, fake):
+    page = look()
+    page.evaluate("app.jogger.start('x', 10)")
+    page.wait_for_selector(".notice >> text=does not hold the command")
+    assert jogs(fake) == []
+
+
+def test_jog_by_keys(look, fake):
+    page = look(command=True)
+    page.keyboard.down("ArrowRight")
+    page.wait_for_timeout(150)
+    page.keyboard.up("ArrowRight")
+    assert jogs(fake) == []  # they are off until they are switched on
+    page.click("text=Jog keys")
+    page.keyboard.down("Shift")
+    page.keyboard.down("ArrowUp")
+    wait_for(page, lambda: len(jogs(fake)) >= 3)
+    page.keyboard.up("ArrowUp")
+    wait_for(page, lambda: fake.received[-1]["type"] == "jog_stop")
+    assert {(message["axis"], message["velocity"]) for message in jogs(fake)} == {("y", 166)}
+
+
+def test_the_page_that_hangs_ends_its_jog(look, fake):
+    page = look(command=True)
+    press_jog(page)
+    wait_for(page, lambda: len(jogs(fake)) >= 3)
+    page.evaluate("() => { const end = performance.now() + 400; while (performance.now() < end); }")
+    wait_for(page, lambda: any(message["type"] == "jog_stop" for message in fake.received))
+    page.mouse.up()
+
+
+def test_a_program_is_loaded_and_runs_with_its_active_line(look, fake):
+    page = look(command=True)
+    page.select_option("[aria-label='Load a program']", "bracket.nc")
+    page.wait_for_selector(".line >> text=N10 G1 X1")
+    page.click("button.primary >> text=Start")
+    page.wait_for_selector(".line.active")
+    page.keyboard.press("F8")
+    page.wait_for_selector(".pill >> text=Feed hold")
+    page.wait_for_selector("button >> text=Resume")
+    commands = [(message["command"], message["arguments"]) for message in fake.received if message["type"] == "command"]
+    assert commands == [("start", {}), ("feed_hold", {"enabled": True})]
+
+
+def test_start_at_a_line(look, fake):
+    page = look(command=True)
+    page.select_option("[aria-label='Load a program']", "bracket.nc")
+    page.fill("[aria-label='Find in the program']", "120")
+    page.press("[aria-label='Find in the program']", "Enter")
+    page.click("text=Start at line 120")
+    wait_for(page, lambda: fake.received[-1].get("arguments") == {"line": 120})
+
+
+def test_a_program_of_150000_lines_is_a_short_list(look, fake):
+    fake.programs["long.nc"] = "\n".join(f"N{i} G1 X{i % 100}" for i in range(150_000))
+    page = look(command=True)
+    page.select_option("[aria-label='Load a program']", "long.nc")
+    page.wait_for_selector(".line >> text=N0 G1 X0")
+    page.fill("[aria-label='Find in the program']", "149990")
+    page.press("[aria-label='Find in the program']", "Enter")
+    page.wait_for_selector(".line >> text=N149989")
+    assert page.locator(".line").count() < 120
+
+
+def test_upload_and_drop(look, fake):
+    page = look(command=True)
+    page.set_input_files(
+        "[aria-label='Upload a program']",
+        {"name": "new.nc", "mimeType": "text/plain", "buffer": b"N10 G0 X5\nN20 M30\n"},
+    )
+    page.wait_for_selector(".line >> text=N10 G0 X5")
+    assert fake.programs["new.nc"] == "N10 G0 X5\nN20 M30\n"
+    page.evaluate(
+        """() => {
+        const data = new DataTransfer();
+        data.items.add(new File(["N10 G0 Y7\\nN20 M30"], "dropped.nc"));
+        document.querySelector(".program-panel").dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true }));
+    }"""
+    )
+    page.wait_for_selector(".line >> text=N10 G0 Y7")
+
+
+def test_override_by_slider_and_keys(look, fake):
+    page = look(command=True)
+    page.locator("[data-unit=channel] input").focus()
+    for _ in range(3):
+        page.keyboard.press("ArrowLeft")
+    wait_for(page, lambda: fake.state["channel"]["override"] == 97)
+    page.keyboard.press("Control+ArrowUp")
+    wait_for(page, lambda: fake.state["channel"]["override"] == 102)
+    page.click("[aria-label='Feed 100 %']")
+    wait_for(page, lambda: fake.state["channel"]["override"] == 100)
+
+
+def test_mdi_has_a_history_and_completes(look, fake):
+    page = look(command=True)
+    field = page.locator("[aria-label='NC text to execute']")
+    field.fill("G0 X10 Y20")
+    field.press("Enter")
+    wait_for(page, lambda: fake.received[-1].get("arguments") == {"text": "G0 X10 Y20"})
+    field.press("ArrowUp")
+    assert field.input_value() == "G0 X10 Y20"
+    field.fill("")
+    field.press_sequentially("G0 X1")
+    page.wait_for_selector(".offers li")
+    field.press("Tab")
+    assert field.input_value() == "G0 X10 Y20"
+
+
+def test_a_handshake_is_acknowledged(look, server, fake):
+    page = look(command=True)
+    server.do(fake.request(kind="M", number=6))
+    page.wait_for_selector("text=M6")
+    page.click(".handshakes >> text=Acknowledge")
+    wait_for(
+        page,
+        lambda: {"unit": "plc", "command": "acknowledge", "arguments": {"id": 7}}.items() <= fake.received[-1].items(),
+    )
+    page.wait_for_selector(".handshakes li", state="detached")
+
+
+def test_positions_of_work_and_machine(look, fake):
+    page = look()
+    page.wait_for_selector(".positions .big >> text=/[0-9]/")
+    shift = "() => app.store.units.z.work_position - app.store.units.z.set_position"
+    assert page.evaluate(shift) == -10
+    assert page.inner_text("[data-axis=z] .big") == "−15.000"
+    page.click("button:text-is('Machine')")
+    assert page.inner_text("[data-axis=z] .big") == "−5.000"
+    page.click("button:text-is('Actual')")
+    assert page.inner_text("[data-axis=z] .big") == "−5.004"
+
+
+def test_offsets_are_shown_set_and_taught(look, fake):
+    page = look(command=True)
+    cell = page.locator("[aria-label='G54 X']")
+    wait_for(page, lambda: cell.input_value() == "12.5")
+    assert page.locator("[aria-label='G54 Z']").get_attribute("placeholder") == "taught"
+    cell.fill("-4")
+    cell.press("Enter")
+    wait_for(page, lambda: commands(fake)[-1] == ("set_zero_offset", {"index": 1, "axis": "X", "value": -4}))
+    page.click("[aria-label='Teach G55 Y']")
+    wait_for(page, lambda: commands(fake)[-1] == ("teach_zero_offset", {"index": 2, "axis": "Y", "value": 0}))
+    page.click("[aria-label='Teach G56, all axes']")
+    wait_for(page, lambda: commands(fake)[-1] == ("teach_zero_offset", {"index": 3, "value": 0}))
+
+
+def commands(fake):
+    return [
+        (message["command"], message["arguments"]) for message in fake.received if message["type"] == "command"
+    ] or [None]

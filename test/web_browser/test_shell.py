@@ -1,0 +1,164 @@
+"""The shell of the pages: all of them open, keys, themes, a broken connection, texts that are no markup."""
+
+import pytest
+from browser_support import HERE, PHONE, until
+from fake_machine import NASTY
+
+PAGES = ["operate", "watch", "scope", "commission", "alarms", "program"]
+AXE = (HERE / "vendor" / "axe.js").read_text(encoding="utf-8")
+RULES = {"runOnly": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "best-practice"]}
+
+
+def violations(page):
+    """What axe finds, as rule, element and reason."""
+    page.evaluate(AXE)
+    found = page.evaluate("rules => axe.run(document, rules)", RULES)["violations"]
+    return [(one["id"], node["target"], node["failureSummary"]) for one in found for node in one["nodes"]]
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("name", PAGES)
+def test_each_page_is_accessible(look, server, fake, name, scheme):
+    page = look(name, scheme=scheme, command=True)
+    server.do(fake.raise_alarm("axis x: following error 2.5 mm > 1 mm"))
+    server.do(fake.request())
+    page.wait_for_selector("text=1 alarm")
+    page.wait_for_timeout(400)
+    assert violations(page) == []
+
+
+def test_each_tab_of_an_axis_is_accessible(look):
+    page = look("commission", command=True)
+    for tab in page.locator("[role=tab]").all():
+        tab.click()
+        page.wait_for_timeout(300)
+        assert violations(page) == [], tab.inner_text()
+
+
+def test_the_curve_of_a_spindle_is_drawn(look):
+    page = look("commission")
+    page.select_option("label:text-is('Unit') + select", "s")
+    page.click("[role=tab]:text-is('Curve')")
+    page.wait_for_selector("[aria-label='Curve of gear 1'] .uplot")
+    assert violations(page) == []
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_no_page_is_wider_than_a_phone(look, name):
+    page = look(name, size=PHONE)
+    page.wait_for_timeout(300)
+    assert page.evaluate("document.documentElement.scrollWidth") <= PHONE["width"]
+    assert page.evaluate("document.querySelector('main').scrollWidth") <= PHONE["width"]
+
+
+def test_pages_are_reached_by_keys(look):
+    page = look()
+    page.keyboard.press("Alt+Digit3")
+    page.wait_for_selector("main.scope .uplot")
+    page.keyboard.press("Alt+Digit5")
+    page.wait_for_selector("main.alarms")
+    page.keyboard.press("F1")
+    page.wait_for_selector("dialog[open]")
+
+
+def test_the_theme_is_that_of_the_system_or_as_chosen(look):
+    page = look(scheme="dark")
+    assert page.evaluate("document.documentElement.dataset.theme") == "dark"
+    page.select_option(".theme", "light")
+    assert page.evaluate("document.documentElement.dataset.theme") == "light"
+    page.reload()
+    page.wait_for_selector(".theme")
+    assert page.evaluate("document.documentElement.dataset.theme") == "light"
+
+
+def test_the_page_comes_back_when_the_connection_breaks(look, server, fake):
+    page = look()
+
+    async def cut():
+        for socket in [*fake.sockets]:
+            await socket.close()
+
+    server.do(cut())
+    until(page, "app.store.link !== 'open'")
+    until(page, "app.store.link === 'open' && app.store.machine !== null")
+    page.wait_for_selector(".positions")
+
+
+def test_the_end_of_the_machine_is_shown(look, server, fake):
+    page = look()
+    server.do(
+        fake.tell(
+            {
+                "type": "gone",
+                "number": 26171,
+                "text": "the machine is gone: its graph has ended",
+                "cause": "",
+                "remedy": "",
+            }
+        )
+    )
+    page.wait_for_selector(".instead >> text=the machine is gone")
+    assert "No machine" in page.inner_text(".pill")
+
+
+def test_texts_are_never_markup(look, server, fake):
+    page = look("program", command=True)
+    page.wait_for_selector(".programs >> text=<script>")
+    page.click(f"[aria-label='Load {NASTY}']")
+    page.wait_for_selector(".line >> text=<script>")
+    server.do(fake.raise_alarm("<img src=x onerror='window.hacked = true'>"))
+    server.do(
+        fake.tell(
+            {
+                "type": "error",
+                "number": 26233,
+                "text": "<script>window.hacked = true</script>",
+                "cause": "",
+                "remedy": "",
+            }
+        )
+    )
+    page.wait_for_selector(".notice >> text=<script>")
+    page.click("text=1 alarm")
+    page.wait_for_selector(".alarm >> text=<img")
+    assert page.evaluate("window.hacked") is None
+    assert page.evaluate("document.querySelectorAll('main img, main script, .notices script').length") == 0
+
+
+def test_the_emergency_stop_needs_no_command_right(look, fake):
+    page = look()
+    page.click("text=Emergency stop")
+    page.wait_for_selector(".pill >> text=Emergency stop")
+    assert {"unit": "plc", "command": "emergency_stop", "arguments": {"enabled": True}}.items() <= fake.received[
+        -1
+    ].items()
+    page.on("dialog", lambda dialog: dialog.accept())
+    page.click("text=Release stop")
+    page.wait_for_selector(".pill >> text=Ready")
+
+
+def test_alarms_have_cause_and_remedy_and_are_acknowledged(look, server, fake):
+    page = look("alarms")
+    server.do(fake.raise_alarm("axis x: following error 2.5 mm > 1 mm"))
+    page.wait_for_selector("text=P-ERR-70100")
+    assert "Cause: The axis is blocked" in page.inner_text(".alarm")
+    assert "Remedy: Look for what blocks it" in page.inner_text(".alarm")
+    page.click("text=Acknowledge >> nth=0")
+    page.wait_for_selector("text=Acknowledged by web")
+    page.wait_for_selector(".alarm-count >> text=No alarms")
+
+
+def are_off(page):
+    return page.evaluate("[...document.querySelectorAll('fieldset.commands')].every(group => group.disabled)")
+
+
+def test_the_command_is_taken_and_given(look):
+    first, second = look(), look()
+    assert are_off(first)
+    first.click("text=Take command")
+    first.wait_for_selector("text=You command")
+    assert not are_off(first)
+    second.wait_for_selector("text=Ask for command")
+    assert are_off(second)
+    first.click("text=Give command")
+    first.wait_for_selector("text=Nobody commands")

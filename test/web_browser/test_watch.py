@@ -1,0 +1,83 @@
+"""Watch and recordings: backplot, progress, time slider."""
+
+from browser_support import InThread, open_page, until
+from fake_machine import Fake
+
+SEGMENTS = 150_000
+
+
+def test_a_backplot_of_150000_segments_is_shown(browser):
+    fake = Fake(points=SEGMENTS)
+    with InThread(fake.app) as server:
+        page = open_page(browser, server.url + "#watch")
+        page.wait_for_selector("[data-ms]")
+        assert f"{SEGMENTS - 1:,} segments" in page.inner_text(".backplot")
+        assert int(page.get_attribute(".backplot", "data-ms")) < 10_000  # 3 s where nothing else runs
+        drawn = page.evaluate("document.querySelector('.backplot').scene._renderer.info.render.lines")
+        assert drawn >= SEGMENTS - 1
+        assert page.complaints.texts == []
+        page.close()
+
+
+def test_views_colours_and_keys(look):
+    page = look("watch")
+    page.wait_for_selector("[data-ms]")
+    page.wait_for_selector(".legend >> text=mm/min")
+    page.select_option("[aria-label='Colour of the path']", "block")
+    page.wait_for_selector(".legend >> text=line 1")
+    page.select_option("[aria-label=View]", "turning")
+    frames = page.evaluate("document.querySelector('.backplot').scene.frames")
+    page.focus("canvas")
+    page.keyboard.press("ArrowLeft")
+    page.keyboard.press("+")
+    until(page, f"document.querySelector('.backplot').scene.frames > {frames}")
+
+
+def test_only_what_is_done_is_drawn(look, server, fake):
+    page = look("watch", command=True)
+    page.wait_for_selector("[data-ms]")
+    page.evaluate("app.command('channel', 'start')")
+    page.click("text=Only what is done")
+    until(
+        page,
+        "document.querySelector('.backplot').scene._shown < 2990 && document.querySelector('.backplot').scene._shown > 0",
+    )
+    page.wait_for_selector("text=left · line")
+
+
+def test_paths_are_broken_where_a_point_has_no_place(look):
+    page = look("alarms")
+    found = page.evaluate(
+        """async () => {
+        const it = await import('/static/watch/toolpath.js');
+        const rows = Float32Array.from([0, 0, 0, 0, 1, 1, 0, 0, 100, 2, NaN, NaN, NaN, 0, 0, 5, 5, 5, 0, 4, 6, 5, 5, 200, 5]);
+        const path = { count: 5, rows };
+        const { pairs, box } = it.geometry(path);
+        const coarse = it.coarser(Uint32Array.from([0, 1, 1, 2, 2, 3, 3, 4, 6, 7]), 3);
+        return [[...pairs], box.min, box.max, [...coarse], it.colours(path, 'feed').fastest, it.pointsUpTo({ count: 3, rows: Float32Array.from([0,0,0,0,1, 0,0,0,0,3, 0,0,0,0,8]) }, 3)];
+    }"""
+    )
+    assert found == [[0, 1, 3, 4], [0, 0, 0], [6, 5, 5], [0, 3, 3, 4, 6, 7], 200, 2]
+
+
+def test_a_recording_has_a_time_and_nothing_to_operate(browser):
+    fake = Fake(recording=True)
+    with InThread(fake.app) as server:
+        page = open_page(browser, server.url)
+        page.wait_for_selector("main.watch")
+        page.click("text=Measured path")
+        until(page, "document.querySelector('.backplot').scene._trail?.geometry.attributes.position.count === 2000")
+        assert page.locator("nav.pages a").all_inner_texts() == ["Watch", "Scope", "Alarms"]
+        assert page.locator("text=Take command").is_hidden()
+        page.click("text=Scope")
+        page.evaluate(
+            "() => { const slider = document.querySelector('.recording-bar input'); slider.value = 12; slider.dispatchEvent(new Event('input')); }"
+        )
+        page.wait_for_selector("text=12.000 s of 30.0 s")
+        until(page, "document.querySelector('main').innerText.includes('2000 samples')")
+        assert [message["time"] for message in fake.received if message["type"] == "seek"][-1] == 12
+        page.click("button:text-is('Play')")
+        until(page, "Number(document.querySelector('.recording-bar input').value) > 12.2")
+        page.click("button:text-is('Pause')")
+        assert page.complaints.texts == []
+        page.close()

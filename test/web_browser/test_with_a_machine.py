@@ -1,0 +1,232 @@
+"""The pages with a real machine behind them: an offline one that runs in real time, without DDS."""
+
+import asyncio
+import shutil
+import time
+from contextlib import suppress
+from pathlib import Path
+
+import pytest
+from browser_support import InThread, open_page, until
+from web_support import EXAMPLES, MILL
+
+from cnc_ptp.web.access import Access
+from cnc_ptp.web.guard import Names
+from cnc_ptp.web.hub import Hub
+from cnc_ptp.web.machine_face import offline_face
+from cnc_ptp.web.programs import ProgramFolder
+from cnc_ptp.web.server import Server
+
+
+@pytest.fixture
+def programs(tmp_path):
+    for name in ("bracket.nc", "cover.nc"):
+        shutil.copy(Path(EXAMPLES) / name, tmp_path / name)
+    return tmp_path
+
+
+@pytest.fixture
+def mill(browser, programs):
+    hub = Hub(lambda: offline_face(MILL), name="mill", folder=ProgramFolder(str(programs)), machine_file=MILL)
+    with InThread(Server(hub, Access(None), Names()).app) as server:
+        pages = []
+
+        def open_one(name="operate", **options):
+            pages.append(open_page(browser, f"{server.url}#{name}", **{"command": True, **options}))
+            return pages[-1]
+
+        open_one.hub, open_one.server = hub, server
+        yield open_one
+        complaints = [text for page in pages for text in page.complaints.texts]
+        for page in pages:
+            page.close()
+        assert complaints == []
+
+
+def load(page, name="bracket.nc"):
+    page.wait_for_selector(f"option:text-is('{name}')", state="attached")
+    page.select_option("[aria-label='Load a program']", name)
+    page.wait_for_selector(f".program-name >> text={name}")
+    until(page, "app.store.units.channel.state === 'ready'")
+
+
+def test_a_program_is_loaded_run_overridden_held_and_reset(mill):
+    page = mill()
+    load(page)
+    page.wait_for_selector(".line >> text=; Bracket, 120 x 80")
+    page.click("button.primary >> text=Start")
+    page.wait_for_selector(".line.active")
+    until(page, "app.store.units.channel.progress > 0")
+    page.locator("[data-unit=channel] input").fill("60")
+    until(page, "app.store.units.channel.override === 60")
+    page.click("text=Feed hold")
+    page.wait_for_selector("button >> text=Resume")
+    page.click("text=Feed hold >> nth=-1")
+    until(page, "app.store.units.channel.state === 'running'")
+    page.click("button:text-is('Reset')")
+    until(page, "!app.store.units.channel.active")
+
+
+def test_a_held_button_moves_the_axis_and_its_end_stops_it(mill):
+    page = mill()
+    box = page.locator("[aria-label='Jog X +']").bounding_box()
+    page.mouse.move(box["x"] + 10, box["y"] + 10)
+    page.mouse.down()
+    until(page, "app.store.units.x.set_position > 1")
+    page.mouse.up()
+    until(page, "app.store.units.x.state === 'Standstill'")
+    there = page.evaluate("app.store.units.x.set_position")
+    page.wait_for_timeout(300)
+    assert page.evaluate("app.store.units.x.set_position") == there
+    page.mouse.down()
+    until(page, f"app.store.units.x.set_position > {there} + 1")
+    page.evaluate("window.dispatchEvent(new Event('blur'))")
+    until(page, "app.store.units.x.state === 'Standstill'")
+    page.mouse.up()
+
+
+async def watch_velocity(hub, samples, seconds):
+    """Time (s, of this computer) and set velocity of x, every few ms."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        samples.append((time.monotonic(), abs(hub.face.state()["x"]["set_velocity"])))
+        await asyncio.sleep(0.005)
+
+
+def jog_until_it_moves(page):
+    box = page.locator("[aria-label='Jog X +']").bounding_box()
+    page.mouse.move(box["x"] + 10, box["y"] + 10)
+    page.mouse.down()
+    until(page, "app.store.units.x.set_velocity > 10")
+    page.wait_for_timeout(300)
+
+
+@pytest.mark.parametrize("how", ["crash", "close"])
+def test_an_axis_stops_when_its_page_dies(browser, mill, how):
+    """Of the time until it begins 0.2 s are the patience of the axis; 250 ms where nothing else runs."""
+    page = open_page(browser, mill.server.url, command=True)
+    jog_until_it_moves(page)
+    samples = []
+    watching = mill.server.begin(watch_velocity(mill.hub, samples, 1.5))
+    page.wait_for_timeout(100)
+    died = time.monotonic()
+    if how == "crash":
+        with suppress(Exception):
+            page.goto("chrome://crash", timeout=500)
+    else:
+        page.close()
+    watching.result(10.0)
+    held = samples[0][1]
+    slower = next(at for at, velocity in samples if velocity < held - 1e-6)
+    print(f"{how}: the stop begins after {1000 * (slower - died):.0f} ms")
+    assert 0.0 < slower - died < 0.8
+    assert samples[-1][1] == 0.0
+
+
+def test_manual_data_input_moves_and_a_refusal_is_shown(mill):
+    page = mill()
+    field = page.locator("[aria-label='NC text to execute']")
+    field.fill("G1 X3 F3000")
+    field.press("Enter")
+    until(page, "Math.abs(app.store.units.x.set_position - 3) < 1e-9")
+    field.fill("G1 XQ")
+    field.press("Enter")
+    page.wait_for_selector(".notice.error")
+
+
+def test_the_scope_triggers_on_a_motion(mill):
+    page = mill("scope")
+    page.wait_for_selector(".channels >> text=x.set_velocity")
+    page.select_option("label:text-is('Mode') + select", "single")
+    page.fill("label:text-is('Level') + input", "5")
+    page.press("label:text-is('Level') + input", "Enter")
+    page.wait_for_selector("text=Waiting for the trigger")
+    page.evaluate("() => void app.command('x', 'move_absolute', { target: 8, velocity: 20 })")
+    page.wait_for_selector("text=Frozen")
+    assert "lost" not in page.inner_text("main")
+    cells = page.locator(".measures tbody tr").first.locator("td").all_inner_texts()
+    assert cells[1] == "20"
+
+
+def test_an_alarm_is_read_and_acknowledged(mill):
+    page = mill("alarms")
+    page.evaluate("() => void app.command('x', 'move_absolute', { target: 5000 })")
+    page.wait_for_selector(".alarm >> text=Remedy")
+    page.click("button:text-is('Acknowledge')")
+    page.wait_for_selector("text=Acknowledged by web")
+
+
+def test_the_backplot_of_a_program(mill):
+    page = mill()
+    load(page, "cover.nc")
+    page.keyboard.press("Alt+Digit2")
+    page.wait_for_selector("[data-ms]")
+    page.wait_for_selector("text=/[0-9,]+ segments/")
+
+
+def test_an_upload_asks_before_it_replaces(mill, programs):
+    page = mill()
+    asked = []
+    page.on("dialog", lambda dialog: (asked.append(dialog.message), dialog.accept()))
+    content = {"name": "bracket.nc", "mimeType": "text/plain", "buffer": b"%A\nN10 G0 X1\nN20 M30\n"}
+    page.set_input_files("[aria-label='Upload a program']", content)
+    page.wait_for_selector(".line >> text=N10 G0 X1")
+    assert asked == ["bracket.nc is in the program folder already. Replace it?"]
+    assert (programs / "bracket.nc").read_bytes() == content["buffer"]
+    page.complaints.texts.clear()  # the browser logs the refusal 409
+
+
+def test_the_axis_page_shows_and_writes_parameters(mill):
+    page = mill("commission")
+    page.wait_for_selector("text=Status, logical")
+    page.click("[role=tab]:text-is('Parameters')")
+    page.fill("[type=search]", "P-AXIS-00099")
+    row = page.locator(".parameters tbody tr").first
+    row.locator("input").fill("4000")
+    row.locator("button").click()
+    page.wait_for_selector(".notice >> text=P-AXIS-00099 = 4000")
+
+
+def test_each_function_of_an_axis_has_its_form(mill):
+    page = mill("commission")
+    for tab in ("Functions", "Dynamics", "Coupling", "Compensation"):
+        page.click(f"[role=tab]:text-is('{tab}')")
+        assert page.locator(".tab-body form").count() >= 3, tab
+    page.click("[role=tab]:text-is('Functions')")
+    form = page.locator("form:has(button:text-is('move absolute'))")
+    form.locator("input").first.fill("2.5")
+    form.locator("button").click()
+    until(page, "Math.abs(app.store.units.x.set_position - 2.5) < 1e-9")
+
+
+def test_a_taught_offset_and_the_curve_of_the_spindle(mill):
+    page = mill()
+    page.locator("[aria-label='G55 X']").fill("7.5")
+    page.locator("[aria-label='G55 X']").press("Enter")
+    page.wait_for_selector(".notice >> text=G55 X = 7.500")
+    page.click("[aria-label='Teach G56, all axes']")
+    until(page, "document.querySelector('[aria-label=\\'G56 X\\']').placeholder === 'taught'")
+    page.keyboard.press("Alt+Digit4")
+    page.select_option("label:text-is('Unit') + select", "s")
+    page.click("[role=tab]:text-is('Curve')")
+    page.wait_for_selector("[aria-label='Curve of gear 1'] .uplot")
+
+
+def test_the_ptp_test_goes_to_and_fro(mill):
+    page = mill("commission")
+    page.click("[role=tab]:text-is('PTP test')")
+    page.fill("label:text-is('Position 1') + input", "4")
+    page.fill("label:text-is('Position 2') + input", "1")
+    page.click("button.primary >> text=Start")
+    page.wait_for_selector("text=2 strokes")
+    assert page.evaluate("app.store.units.x.set_position") == 1
+
+
+def test_the_circle_test_draws_its_deviations(mill):
+    page = mill("commission")
+    page.click("[role=tab]:text-is('Circle test')")
+    page.fill("label:text-is('Radius in mm') + input", "5")
+    page.click("button.primary >> text=Start")
+    page.wait_for_selector("text=Deviations are drawn 500 times as large.")
+    radius = float(page.locator(".reading:has-text('Radius') output").inner_text())
+    assert abs(radius - 5) < 0.05
