@@ -323,7 +323,7 @@ def watch_command(machine: str | None, **options: Any) -> None:
 @web_options
 @client_namespace_option
 def web_command(**options: Any) -> None:
-    """Serve pages of the running machine, or of a RECORDING, to browsers.
+    """Serve pages of a machine or RECORDING to browsers.
 
     On this computer alone, at http://localhost:8080.
     """

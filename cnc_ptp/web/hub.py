@@ -23,6 +23,7 @@ from cnc_ptp.web.program_watch import ProgramWatch
 from cnc_ptp.web.programs import ProgramFolder
 from cnc_ptp.web.protocol import VERSION, difference, error_fields
 from cnc_ptp.web.session import Session
+from cnc_ptp.web.switches import Switches
 from cnc_ptp.web.tasks import Tasks
 
 PERIOD = 0.04
@@ -52,6 +53,7 @@ class Hub:
         self.alarms = Alarms()
         self.handshakes: dict[int, dict[str, Any]] = {}
         self.tables: dict[str, OffsetTable] = {}
+        self._switches = Switches()
         self.offsets: dict[str, dict[str, Any]] = {}
         """Channel -> what lies between programmed and machine positions."""
         self._state: State = {}
@@ -93,6 +95,7 @@ class Hub:
         self.handshakes.clear()
         self.programs.forget()
         self.offsets.clear()
+        self._switches = Switches()
         channels = [unit for unit, kind in face.kinds.items() if kind == "channel"]
         self.tables = {unit: OffsetTable(face.sets[unit], face.sets) for unit in channels}
         self.programs.text_of = face.text_of
@@ -152,7 +155,7 @@ class Hub:
                 self._tell_offsets(unit, block)
         if news.diagnostics:
             self.to_all({"type": "diagnostics", "nodes": [*news.diagnostics]})
-        state = face.state()
+        state = {unit: {**fields, **self._switches.fields.get(unit, {})} for unit, fields in face.state().items()}
         changes = difference(state, self._state)
         self._state = state
         for program in self.programs.changes(changes):
@@ -170,12 +173,14 @@ class Hub:
         self.to_all({"type": "event", **(alarm or fields)})
 
     def _tell_request(self, request: HandshakeRequest) -> None:
+        self._switches.take_request(request)
         if request.acknowledge_needed:
             self.handshakes[request.id] = request_fields(request)
             self.to_all({"type": "handshake", **request_fields(request)})
 
     def _tell_answered(self, record: CommandRecord) -> None:
         """A request that was acknowledged, an offset that was changed, by whomever."""
+        self._switches.take_record(record)
         if record.target in self.tables:
             self.tables[record.target].take_record(record)
         if record.command == "acknowledge" and record.accepted:

@@ -92,6 +92,17 @@ def test_a_machine_is_operated_and_its_server_killed(ros_domain, machine, folder
     assert recorded.states["/x/state"]["set_velocity"][-1] == 0.0
 
 
+def test_a_run_is_killed_and_its_server_ends(ros_domain, machine):
+    run = Running(machine, "--composed", "--web", str(unused_port()), "--stay")
+    try:
+        wait_for_server(run)
+        server = server_of(run)
+        run.process.kill()
+        server.wait(30)
+    finally:
+        run.end()
+
+
 def wait_for_server(run):
     """It has told its address."""
     for line in run.process.stdout:

@@ -102,3 +102,17 @@ def test_the_curve_of_a_spindle():
             assert points[-1]["acceleration"] < points[0]["acceleration"]
 
     asyncio.run(story())
+
+
+def test_switches_and_tools():
+    async def story():
+        async with site() as here:
+            page = await here.page()
+            assert (await page.command("channel", "single_block", enabled=True))["ok"]
+            await page.state_of("channel", lambda channel: channel.get("single_block") is True)
+            assert (await page.command("channel", "single_block", enabled=False))["ok"]
+            assert (await page.ask("load", name="part.nc", text="T2\nM30\n"))["ok"]
+            assert (await page.command("channel", "start"))["ok"]
+            await page.state_of("channel", lambda channel: channel.get("tool") == 2)
+
+    asyncio.run(story())

@@ -222,7 +222,7 @@ def test_a_file_that_is_not_there(tmp_path):
     ],
 )  # fmt: skip
 def test_the_command(users, words, status, text):
-    result = CliRunner().invoke(main, ["web-users", *words, "--users", str(users)])
+    result = CliRunner().invoke(main, ["users", *words, "--users", str(users)])
     assert result.exit_code == status
     assert text in result.output.splitlines()
 

@@ -49,7 +49,7 @@ class WebBesideRun:
         self._process = subprocess.Popen(
             [sys.executable, "-m", "cnc_ptp", "web", *options, "--listening", str(number), *ros_arguments().words],
             pass_fds=[number],
-            stdin=subprocess.DEVNULL,
+            stdin=subprocess.PIPE,  # closed when this process ends, however: then it ends too
             start_new_session=True,  # Ctrl-C is for the run, which ends it in order
             preexec_fn=be_nice,
         )

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import os
+import select
 import socket
+import sys
 from collections.abc import Callable
 
+from cnc_ptp.nodes.forked import end_with
 from cnc_ptp.ros_arguments import ros_arguments
 from cnc_ptp.web.face import Face
 from cnc_ptp.web.options import WebOptions, listen, require_packages
@@ -38,6 +41,10 @@ def web(
     options = WebOptions(port, host, names, programs, certificate, key, users, machine)
     taken = listen(host, port) if listening is None else socket.socket(fileno=listening)
     os.nice(NICENESS)
+    if listening is not None:
+        end_with(sys.stdin.fileno())
+        if select.select([sys.stdin], [], [], 0.0)[0]:
+            return 0  # the run has ended before the signal was ordered
     asyncio.run(serve(connector(recording), options, taken, tell=print_address))
     return 0
 

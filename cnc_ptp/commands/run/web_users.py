@@ -1,4 +1,4 @@
-"""`cnc_ptp web-users`: who may log in to the pages, and tokens of machines."""
+"""`cnc_ptp users`: who may log in to the pages, and tokens of machines."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ROLE = click.option("--role", type=click.Choice(ROLES), required=True, help="Wha
 NAME = click.argument("name")
 
 
-@click.group("web-users")
+@click.group("users")
 def web_users() -> None:
     """Users of the pages: add, remove, list; tokens of machines."""
     require_packages()
