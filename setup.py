@@ -18,7 +18,7 @@ PACKAGE = "cnc_ptp"
 ROOT = Path(__file__).parent.resolve()
 COMMANDS = (
     "simulate", "run", "status", "jog", "check", "explain", "format", "replay", "report", "plot", "layout", "recover",
-    "params", "identify", "circle", "curve", "lists", "sweep", "web",
+    "params", "identify", "circle", "curve", "lists", "sweep",
 )  # fmt: skip
 """Executables of their own. Not `do` and `export`, words of the shell, nor `watch`, `init`, `diff`, which Linux has."""
 NODES = ("nc_channel", "axis", "spindle", "plc_bridge", "clock", "recorder", "player")
