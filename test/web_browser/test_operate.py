@@ -151,9 +151,9 @@ def test_override_by_slider_and_keys(look, fake):
     page.locator("[data-unit=channel] input").focus()
     for _ in range(3):
         page.keyboard.press("ArrowLeft")
-    wait_for(page, lambda: fake.state["channel"]["override"] == 97)
+    wait_for(page, lambda: page.evaluate("app.store.units.channel.override") == 97)
     page.keyboard.press("Control+ArrowUp")
-    wait_for(page, lambda: fake.state["channel"]["override"] == 102)
+    wait_for(page, lambda: page.evaluate("app.store.units.channel.override") == 102)
     page.click("[aria-label='Feed 100 %']")
     wait_for(page, lambda: fake.state["channel"]["override"] == 100)
 

@@ -61,7 +61,7 @@ def test_a_program_is_loaded_run_overridden_held_and_reset(mill):
     until(page, "app.store.units.channel.override === 60")
     page.click("text=Feed hold")
     page.wait_for_selector("button >> text=Resume")
-    page.click("text=Feed hold >> nth=-1")
+    page.click("button >> text=Resume")
     until(page, "app.store.units.channel.state === 'running'")
     page.click("button:text-is('Reset')")
     until(page, "!app.store.units.channel.active")

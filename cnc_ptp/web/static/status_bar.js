@@ -1,5 +1,5 @@
 // The bar above all pages: state of the machine, who commands, alarms, emergency stop.
-import { button, h, press, say, select } from "./dom.js";
+import { button, h, say, select } from "./dom.js";
 import { fixed } from "./format.js";
 import { showHelp } from "./help.js";
 
@@ -79,24 +79,22 @@ function look() {
   return h("div", { class: "group look" }, choice, button("?", showHelp, { "aria-label": "Keys and help (F1)" }));
 }
 
-/** Acts also for who does not hold the command; only its release asks. */
+/** Stops also for who does not hold the command, and always; its release is a button of its own, which asks. */
 function emergency(app) {
   const { store } = app;
-  const stop = button("Emergency stop", act, { class: "emergency", "aria-pressed": "false" });
-
-  async function act() {
+  const stop = button("Emergency stop", () => {
     app.jogger.stopAll();
-    if (!store.inEmergency) await app.command("plc", "emergency_stop", { enabled: true });
-    else if (window.confirm("Release the emergency stop? Each unit in error needs a reset afterwards.")) await app.command("plc", "emergency_stop", { enabled: false });
-  }
-
+    app.command("plc", "emergency_stop", { enabled: true });
+  }, { class: "emergency" });
+  const release = button("Release stop", () => {
+    if (window.confirm("Release the emergency stop? Each unit in error needs a reset afterwards.")) app.command("plc", "emergency_stop", { enabled: false });
+  });
   const show = () => {
-    press(stop, store.inEmergency);
-    say(stop, store.inEmergency ? "Release stop" : "Emergency stop");
     stop.hidden = Boolean(store.machine?.recording);
     stop.disabled = store.link !== "open" || !store.machine || store.role === "viewer";
+    release.hidden = stop.hidden || stop.disabled || !store.inEmergency;
   };
   for (const topic of ["state", "link", "hello", "gone"]) store.on(topic, show);
   show();
-  return stop;
+  return h("div", { class: "group stops" }, release, stop);
 }

@@ -7,7 +7,7 @@ const SWITCHES = [["single_block", "Single block"], ["block_skip", "Block skip"]
 export function controls(app) {
   const { store } = app;
   const channel = () => store.channel;
-  const start = button("Start", () => app.command(channel(), "start"), { class: "primary" });
+  const start = button("Start", () => startOrResume(app), { class: "primary" });
   const hold = toggle("Feed hold", (on) => app.command(channel(), "feed_hold", { enabled: on }));
   const reset = button("Reset", () => resetAll(app));
   const switches = SWITCHES.map(([name, text]) => toggle(text, (on) => setSwitch(app, name, on), { dataset: { switch: name } }));
@@ -21,8 +21,8 @@ export function controls(app) {
 
   function update() {
     const state = store.state(channel());
-    say(start, ["hold", "stopped"].includes(state.state) ? "Resume" : "Start");
-    press(hold, state.feed_hold ?? state.state === "hold");
+    say(start, isHeld(state) || state.state === "stopped" ? "Resume" : "Start");
+    press(hold, isHeld(state));
     for (const one of switches) if (state[one.dataset.switch] !== undefined) press(one, state[one.dataset.switch]);
     progress.value = state.progress || 0;
     const left = state.time_left >= 0 ? `${duration(state.time_left)} left` : "time left not known";
@@ -31,6 +31,13 @@ export function controls(app) {
   const end = store.on("state", update);
   update();
   return { element, end };
+}
+
+const isHeld = (state) => state.feed_hold ?? state.state === "hold";
+
+function startOrResume(app) {
+  const { channel } = app.store;
+  return isHeld(app.store.state(channel)) ? app.command(channel, "feed_hold", { enabled: false }) : app.command(channel, "start");
 }
 
 /** The server may not report it; then the button shows what was commanded. */
@@ -54,8 +61,8 @@ export function keys(app) {
   const { store } = app;
   const acts = {
     F7: () => toggleSwitch("single_block"),
-    F8: () => app.command(store.channel, "feed_hold", { enabled: store.state(store.channel).state !== "hold" }),
-    F9: () => app.command(store.channel, store.state(store.channel).state === "hold" ? "feed_hold" : "start", store.state(store.channel).state === "hold" ? { enabled: false } : {}),
+    F8: () => app.command(store.channel, "feed_hold", { enabled: !isHeld(store.state(store.channel)) }),
+    F9: () => startOrResume(app),
   };
   const toggleSwitch = (name) => document.querySelector(`[data-switch="${name}"]`)?.click();
 

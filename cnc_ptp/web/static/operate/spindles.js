@@ -70,7 +70,7 @@ function tool(app) {
   const update = () => {
     const state = app.store.state(app.store.channel);
     t(state.tool ?? numbers.T);
-    d(state.compensation ?? numbers.D);
+    d(state.tool_data ?? numbers.D);
   };
   app.store.on("state", update);
   return { element: panel("Tool", list) };

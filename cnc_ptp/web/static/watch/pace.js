@@ -2,7 +2,8 @@
 
 // [each so many-th point is joined, pixels of the picture for one of the screen]
 const LEVELS = [[1, 1], [4, 0.75], [8, 0.5], [16, 0.5], [32, 0.5], [64, 0.4], [128, 0.35]];
-const [SLOW, QUICK] = [28, 9]; // ms of a picture: coarser, finer
+const [SLOW, QUICK] = [28, 19]; // ms of a picture: coarser; as quick as the screen: finer
+const RETRY = 2000; // ms after a coarser level until a finer one is tried
 const STILL = 250; // ms without turning until all is drawn again
 const PAUSE = 400; // ms; longer ones between two pictures are none of drawing
 
@@ -14,6 +15,7 @@ export class Pace {
     this._before = 0;
     this._times = [];
     this._still = 0;
+    this._retryAt = 0;
     this.isTurned = false;
   }
 
@@ -44,11 +46,16 @@ export class Pace {
     if (this._times.length < 3 && took < 2 * SLOW) return;
     const mean = this._times.reduce((sum, time) => sum + time, 0) / this._times.length;
     this._times = [];
-    const level = mean > SLOW ? this._level + (mean > 3 * SLOW ? 2 : 1) : mean < QUICK ? this._level - 1 : this._level;
-    const next = Math.min(Math.max(level, 0), LEVELS.length - 1);
+    const next = this._next(mean, now);
     if (next === this._level) return;
+    if (next > this._level) this._retryAt = now + RETRY;
     this._level = next;
     this._choose(...LEVELS[next]);
+  }
+
+  _next(mean, now) {
+    if (mean > SLOW) return Math.min(this._level + (mean > 3 * SLOW ? 2 : 1), LEVELS.length - 1);
+    return mean < QUICK && now > this._retryAt ? Math.max(this._level - 1, 0) : this._level;
   }
 
   get step() {
