@@ -1,4 +1,4 @@
-# make demo   a part is machined by the ROS graph: runs/demo.mcap and runs/demo.html
+# make demo   a part is machined by the ROS graph: runs/demo.mcap and runs/demo.html; LOOK=1: pages of it in a browser
 # make test   all tests;  make lint: ruff and mypy;  make bench: figures, never fails on time;  make setup: the set-up alone
 # make figures   every scenario of examples/figures runs and becomes a picture in docs/figures
 # make docs   reference pages and gallery are made again, then the site: build/site/index.html
@@ -41,6 +41,8 @@ demo: setup
 	@mkdir -p runs
 	$(BIN)/cnc_ptp run config/mill.yaml --program examples/bracket.nc --scenario examples/bracket_overrides.yaml --record runs/demo.mcap
 	$(BIN)/cnc_ptp report runs/demo.mcap -o runs/demo.html
+	@echo "The report is runs/demo.html. Pages of this run in a browser, http://localhost:8080: make demo LOOK=1, or $(BIN)/cnc_ptp web runs/demo.mcap"
+	$(if $(LOOK),$(BIN)/cnc_ptp web runs/demo.mcap)
 
 test: setup
 	$(BIN)/pytest -n 2 --dist worksteal --ignore test/graph
