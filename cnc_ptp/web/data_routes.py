@@ -14,13 +14,13 @@ from cnc_ptp.client.faults import unknown_unit
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import ParameterSet, ros_descriptors
 from cnc_ptp.parameters.declare.declarations import catalogue
-from cnc_ptp.web.access import Access
+from cnc_ptp.web.access.access import Access
+from cnc_ptp.web.commissioning.spindle_curve import spindle_curve
+from cnc_ptp.web.faces.recorded_face import RecordedFace
+from cnc_ptp.web.faces.scope import read_signals
 from cnc_ptp.web.hub import Hub
 from cnc_ptp.web.numbers import A_RECORDING, BAD_MESSAGE
 from cnc_ptp.web.protocol import NOTHING, frame
-from cnc_ptp.web.recorded_face import RecordedFace
-from cnc_ptp.web.scope import read_signals
-from cnc_ptp.web.spindle_curve import spindle_curve
 
 NOT_STORED = {"Cache-Control": "no-store"}
 

@@ -13,18 +13,18 @@ from typing import Any
 from cnc_ptp.client.faults import GONE
 from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import ChannelBlock, CommandRecord, Event, HandshakeRequest
-from cnc_ptp.web.alarms import Alarms, event_fields
-from cnc_ptp.web.command_right import CommandRight
-from cnc_ptp.web.drawing_office import DrawingOffice
-from cnc_ptp.web.face import Face, State
+from cnc_ptp.web.access.command_right import CommandRight
+from cnc_ptp.web.commissioning.tasks import Tasks
+from cnc_ptp.web.faces.alarms import Alarms, event_fields
+from cnc_ptp.web.faces.face import Face, State
+from cnc_ptp.web.faces.offset_table import OffsetTable
+from cnc_ptp.web.faces.program_watch import ProgramWatch
+from cnc_ptp.web.faces.switches import Switches
 from cnc_ptp.web.numbers import NO_MACHINE_YET
-from cnc_ptp.web.offset_table import OffsetTable
-from cnc_ptp.web.program_watch import ProgramWatch
-from cnc_ptp.web.programs import ProgramFolder
+from cnc_ptp.web.programs.drawing_office import DrawingOffice
+from cnc_ptp.web.programs.programs import ProgramFolder
 from cnc_ptp.web.protocol import VERSION, difference, error_fields
 from cnc_ptp.web.session import Session
-from cnc_ptp.web.switches import Switches
-from cnc_ptp.web.tasks import Tasks
 
 PERIOD = 0.04
 """Seconds between two states: 25 a second, so that it is more than 20 on a busy computer too."""

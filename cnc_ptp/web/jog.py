@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from cnc_ptp.client.faults import unknown_unit
 from cnc_ptp.errors import CncError
 from cnc_ptp.nodes.bridge.jog_topics import PATIENCE
+from cnc_ptp.web.access.rights import require_role
 from cnc_ptp.web.numbers import JOG_ENDED
 from cnc_ptp.web.page import Page
 from cnc_ptp.web.protocol import Message, error_fields, field
-from cnc_ptp.web.rights import require_role
 
 LATE = 0.15
 """Seconds that a message may be late, measured against the quickest one of its page."""

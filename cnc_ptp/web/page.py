@@ -6,14 +6,14 @@ import asyncio
 from collections.abc import Mapping
 from typing import Any, Protocol
 
-from cnc_ptp.web.alarms import Alarms
-from cnc_ptp.web.command_right import CommandRight
-from cnc_ptp.web.face import Face
-from cnc_ptp.web.offset_table import OffsetTable
-from cnc_ptp.web.program_watch import ProgramWatch
-from cnc_ptp.web.programs import ProgramFolder
-from cnc_ptp.web.scope import Stream
-from cnc_ptp.web.tasks import Tasks
+from cnc_ptp.web.access.command_right import CommandRight
+from cnc_ptp.web.commissioning.tasks import Tasks
+from cnc_ptp.web.faces.alarms import Alarms
+from cnc_ptp.web.faces.face import Face
+from cnc_ptp.web.faces.offset_table import OffsetTable
+from cnc_ptp.web.faces.program_watch import ProgramWatch
+from cnc_ptp.web.faces.scope import Stream
+from cnc_ptp.web.programs.programs import ProgramFolder
 
 
 class Shared(Protocol):

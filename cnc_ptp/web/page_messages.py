@@ -7,14 +7,14 @@ from typing import Any
 
 from cnc_ptp.client.faults import unknown_unit
 from cnc_ptp.errors import CncError, nearest_name
-from cnc_ptp.web.commissioning_messages import CommissioningMessages
+from cnc_ptp.web.access.rights import is_stop, require_page_command, require_role, role_for
+from cnc_ptp.web.commissioning.commissioning_messages import CommissioningMessages
+from cnc_ptp.web.faces.recorded_face import RecordedFace
+from cnc_ptp.web.faces.scope import Stream, read_signals
 from cnc_ptp.web.jog import Jogs
 from cnc_ptp.web.numbers import A_RECORDING, BAD_MESSAGE
 from cnc_ptp.web.page import Page
 from cnc_ptp.web.protocol import NOTHING, Message, answer, field
-from cnc_ptp.web.recorded_face import RecordedFace
-from cnc_ptp.web.rights import is_stop, require_page_command, require_role, role_for
-from cnc_ptp.web.scope import Stream, read_signals
 
 Answering = Awaitable[Message]
 

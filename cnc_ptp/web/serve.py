@@ -10,10 +10,10 @@ from contextlib import suppress
 from pathlib import Path
 
 from cnc_ptp.catalogue import entry
-from cnc_ptp.web.face import Face
+from cnc_ptp.web.access.security import tls_context
+from cnc_ptp.web.faces.face import Face
 from cnc_ptp.web.numbers import NO_PORT
 from cnc_ptp.web.options import WebOptions
-from cnc_ptp.web.security import tls_context
 
 
 def machine_name(options: WebOptions) -> str:
@@ -27,12 +27,12 @@ async def serve(
     """Until SIGINT or SIGTERM. `connect` gives the face of the machine; `tell` gets the address."""
     from aiohttp import web
 
-    from cnc_ptp.web.access import Access
-    from cnc_ptp.web.guard import LOCAL_NAMES, Names
+    from cnc_ptp.web.access.access import Access
+    from cnc_ptp.web.access.guard import LOCAL_NAMES, Names
+    from cnc_ptp.web.access.users import Users
     from cnc_ptp.web.hub import Hub
-    from cnc_ptp.web.programs import ProgramFolder
+    from cnc_ptp.web.programs.programs import ProgramFolder
     from cnc_ptp.web.server import Server
-    from cnc_ptp.web.users import Users
 
     tls = tls_context(options.certificate, options.key)
     entry(NO_PORT)  # the catalogue is read now, and not when the first page gets an error

@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 from itertools import count
-from pathlib import Path
 from typing import Any
 
 from aiohttp import WSCloseCode, WSMsgType, web
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.web.access import COOKIE, Access
+from cnc_ptp.web.access.access import COOKIE, Access
+from cnc_ptp.web.access.guard import Names, make_guard
+from cnc_ptp.web.access.logins import Login
 from cnc_ptp.web.data_routes import DataRoutes
-from cnc_ptp.web.guard import Names, make_guard
 from cnc_ptp.web.hub import Hub
-from cnc_ptp.web.logins import Login
 from cnc_ptp.web.numbers import BAD_MESSAGE, TOO_MANY_SESSIONS
-from cnc_ptp.web.program_routes import ProgramRoutes
+from cnc_ptp.web.programs.program_routes import ProgramRoutes
 from cnc_ptp.web.protocol import LARGEST_MESSAGE, NOTHING, error_fields, field, frame, read_body, read_message
 from cnc_ptp.web.session import Session
+from cnc_ptp.web.static_files import StaticFiles
 
-STATIC = Path(__file__).parent / "static"
 MOST_SESSIONS = 50
 FIRST_MESSAGE = 5.0
 """Seconds within which a page says who it is."""
@@ -34,6 +33,7 @@ class Server:
 
     def __init__(self, hub: Hub, access: Access, names: Names) -> None:
         self.hub, self.access = hub, access
+        self._static = StaticFiles()
         self.app = web.Application(middlewares=[make_guard(names)], client_max_size=LARGEST_MESSAGE)
         self.app.on_startup.append(self._begin)
         self.app.on_shutdown.append(self._end)
@@ -42,7 +42,7 @@ class Server:
         self.app.router.add_post("/api/login", self._log_in)
         self.app.router.add_post("/api/logout", self._log_out)
         self.app.router.add_get("/ws", self._socket)
-        self.app.router.add_static("/static", STATIC)
+        self.app.router.add_get("/static/{name:.+}", self._static.serve)
         ProgramRoutes(hub, access).add_to(self.app)
         DataRoutes(hub, access).add_to(self.app)
 
@@ -53,7 +53,7 @@ class Server:
         await self.hub.end()
 
     async def _index(self, request: web.Request) -> web.StreamResponse:
-        response = web.FileResponse(STATIC / "index.html", headers={"Cache-Control": "no-cache"})
+        response = self._static.response(request, "index.html")
         self.access.welcome(request, response)
         return response
 

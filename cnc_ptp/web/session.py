@@ -12,15 +12,15 @@ from aiohttp import WSCloseCode, WSMsgType, web
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import CycleBlock
-from cnc_ptp.web.access import Access
-from cnc_ptp.web.face import State
-from cnc_ptp.web.logins import Login
+from cnc_ptp.web.access.access import Access
+from cnc_ptp.web.access.logins import Login
+from cnc_ptp.web.faces.face import State
+from cnc_ptp.web.faces.scope import Stream
 from cnc_ptp.web.numbers import SESSION_ENDED, TOO_MANY_MESSAGES
 from cnc_ptp.web.page import Shared
 from cnc_ptp.web.page_messages import PageMessages
 from cnc_ptp.web.protocol import Message, error_fields, frame, read_message, refusal
 from cnc_ptp.web.rate import Rate
-from cnc_ptp.web.scope import Stream
 
 MOST_PER_SECOND = 200
 BURST = 400

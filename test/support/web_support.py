@@ -7,14 +7,14 @@ from pathlib import Path
 import numpy as np
 from aiohttp.test_utils import TestClient, TestServer
 
-from cnc_ptp.web.access import Access
-from cnc_ptp.web.guard import Names
+from cnc_ptp.web.access.access import Access
+from cnc_ptp.web.access.guard import Names
+from cnc_ptp.web.access.users import Users
+from cnc_ptp.web.faces.machine_face import offline_face
+from cnc_ptp.web.faces.scope import HEAD
 from cnc_ptp.web.hub import Hub
-from cnc_ptp.web.machine_face import offline_face
-from cnc_ptp.web.programs import ProgramFolder
-from cnc_ptp.web.scope import HEAD
+from cnc_ptp.web.programs.programs import ProgramFolder
 from cnc_ptp.web.server import Server
-from cnc_ptp.web.users import Users
 
 ROOT = Path(__file__).parents[2]
 MILL = str(ROOT / "config" / "mill.yaml")

@@ -8,9 +8,9 @@ from aiohttp.test_utils import unused_port
 from web_support import MILL, site
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.web.machine_face import offline_face
+from cnc_ptp.web.access.security import require_secured, tls_context
+from cnc_ptp.web.faces.machine_face import offline_face
 from cnc_ptp.web.options import listen
-from cnc_ptp.web.security import require_secured, tls_context
 
 
 def run(story, **options):

@@ -8,7 +8,7 @@ from web_support import MILL, site
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import read_machine
-from cnc_ptp.web.changed_machine import write_changed
+from cnc_ptp.web.commissioning.changed_machine import write_changed
 
 VALUES = "/x:\n  ros__parameters:\n    lr_param: {frict_comp: 0}\n"
 

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import pytest
 from web_support import MILL, site
 
+from cnc_ptp.web.faces.machine_face import offline_face
 from cnc_ptp.web.jog import Jogs
-from cnc_ptp.web.machine_face import offline_face
 
 MOST_CYCLES = 250
 """From the key that comes up, or the last message, to the beginning of the stop: 250 ms."""

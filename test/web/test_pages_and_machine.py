@@ -4,7 +4,7 @@ import asyncio
 
 from web_support import ROOT, site
 
-from cnc_ptp.web.backplot import HEAD
+from cnc_ptp.web.programs.backplot import HEAD
 
 
 def test_a_page_sees_the_machine_and_moves_an_axis():

@@ -6,8 +6,8 @@ import pytest
 from web_support import MILL, site
 
 from cnc_ptp.client import Machine
-from cnc_ptp.web.recorded_face import RecordedFace
-from cnc_ptp.web.scope import HEAD
+from cnc_ptp.web.faces.recorded_face import RecordedFace
+from cnc_ptp.web.faces.scope import HEAD
 
 
 @pytest.fixture(scope="module")

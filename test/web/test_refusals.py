@@ -8,10 +8,10 @@ import pytest
 from web_support import MILL, site
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.web.machine_face import offline_face
+from cnc_ptp.web.commissioning.tasks import Tasks
+from cnc_ptp.web.faces.machine_face import offline_face
 from cnc_ptp.web.options import require_packages
-from cnc_ptp.web.programs import ProgramFolder
-from cnc_ptp.web.tasks import Tasks
+from cnc_ptp.web.programs.programs import ProgramFolder
 
 
 def run(story, **options):

@@ -14,10 +14,10 @@ from web_support import Page, site
 
 from cnc_ptp.cli import main
 from cnc_ptp.errors import CncError
-from cnc_ptp.web.logins import IDLE_TIME, LONGEST_TIME, Logins
+from cnc_ptp.web.access.logins import IDLE_TIME, LONGEST_TIME, Logins
+from cnc_ptp.web.access.security import tls_context
+from cnc_ptp.web.access.users import Users, add_token, add_user, read_users, remove
 from cnc_ptp.web.rate import Rate
-from cnc_ptp.web.security import tls_context
-from cnc_ptp.web.users import Users, add_token, add_user, read_users, remove
 
 PASSWORD = "long enough"
 
@@ -104,7 +104,7 @@ def test_many_attempts(users, monkeypatch):
         assert (answer.status, (await answer.json())["number"], (await answer.json())["text"]) == (429, 26255, text)
         assert (await log_in(here, "cora")).status == 200
 
-    monkeypatch.setattr("cnc_ptp.web.access.LOGINS_PER_SECOND", 1e-3)
+    monkeypatch.setattr("cnc_ptp.web.access.access.LOGINS_PER_SECOND", 1e-3)
     run(story, users=users)
 
 

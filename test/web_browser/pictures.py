@@ -17,11 +17,11 @@ sys.path[:0] = [str(HERE), str(HERE.parent / "support"), str(ROOT)]
 from browser_support import DESKTOP, PHONE, InThread, chromium, open_page, until  # noqa: E402
 from PIL import Image  # noqa: E402
 
-from cnc_ptp.web.access import Access  # noqa: E402
-from cnc_ptp.web.guard import Names  # noqa: E402
+from cnc_ptp.web.access.access import Access  # noqa: E402
+from cnc_ptp.web.access.guard import Names  # noqa: E402
+from cnc_ptp.web.faces.machine_face import offline_face  # noqa: E402
 from cnc_ptp.web.hub import Hub  # noqa: E402
-from cnc_ptp.web.machine_face import offline_face  # noqa: E402
-from cnc_ptp.web.programs import ProgramFolder  # noqa: E402
+from cnc_ptp.web.programs.programs import ProgramFolder  # noqa: E402
 from cnc_ptp.web.server import Server  # noqa: E402
 
 PAGES = ("operate", "watch", "scope", "commission", "alarms", "program")

@@ -10,11 +10,11 @@ import pytest
 from browser_support import InThread, open_page, until
 from web_support import EXAMPLES, MILL
 
-from cnc_ptp.web.access import Access
-from cnc_ptp.web.guard import Names
+from cnc_ptp.web.access.access import Access
+from cnc_ptp.web.access.guard import Names
+from cnc_ptp.web.faces.machine_face import offline_face
 from cnc_ptp.web.hub import Hub
-from cnc_ptp.web.machine_face import offline_face
-from cnc_ptp.web.programs import ProgramFolder
+from cnc_ptp.web.programs.programs import ProgramFolder
 from cnc_ptp.web.server import Server
 
 

@@ -11,9 +11,9 @@ from collections.abc import Callable
 
 from cnc_ptp.nodes.forked import end_with
 from cnc_ptp.ros_arguments import ros_arguments
-from cnc_ptp.web.face import Face
+from cnc_ptp.web.access.security import require_secured
+from cnc_ptp.web.faces.face import Face
 from cnc_ptp.web.options import WebOptions, listen, require_packages
-from cnc_ptp.web.security import require_secured
 from cnc_ptp.web.serve import serve
 
 NICENESS = 5
@@ -52,11 +52,11 @@ def web(
 def connector(recording: str | None) -> Callable[[], Face]:
     """Gives the face of the machine. Raises CncError 26001 … for a recording that cannot be read."""
     if recording is not None:
-        from cnc_ptp.web.recorded_face import RecordedFace
+        from cnc_ptp.web.faces.recorded_face import RecordedFace
 
         face = RecordedFace(recording)
         return lambda: face
-    from cnc_ptp.web.live_face import live_face
+    from cnc_ptp.web.faces.live_face import live_face
 
     namespace = ros_arguments().namespace
     return lambda: live_face(namespace=namespace)

@@ -29,7 +29,7 @@ def web_users() -> None:
 @click.password_option(help="Asked for when it is not given.")
 def add(name: str, file: str, role: str, password: str) -> None:
     """Add a user, or give one another role and password."""
-    from cnc_ptp.web.users import add_user
+    from cnc_ptp.web.access.users import add_user
 
     add_user(Path(file), name, role, password)
     print(f"{name} is {role}")
@@ -41,7 +41,7 @@ def add(name: str, file: str, role: str, password: str) -> None:
 @ROLE
 def token(name: str, file: str, role: str) -> None:
     """Make a token for a machine, which sends it as `Authorization: Bearer TOKEN`. It is shown once."""
-    from cnc_ptp.web.users import add_token
+    from cnc_ptp.web.access.users import add_token
 
     print(add_token(Path(file), name, role))
 
@@ -51,7 +51,7 @@ def token(name: str, file: str, role: str) -> None:
 @FILE
 def remove(name: str, file: str) -> None:
     """Remove a user or a token; open pages of it end."""
-    from cnc_ptp.web.users import remove as remove_entry
+    from cnc_ptp.web.access.users import remove as remove_entry
 
     remove_entry(Path(file), name)
     print(f"{name} is removed")
@@ -61,7 +61,7 @@ def remove(name: str, file: str) -> None:
 @FILE
 def list_users(file: str) -> None:
     """List users and tokens with their roles."""
-    from cnc_ptp.web.users import read_users
+    from cnc_ptp.web.access.users import read_users
 
     for kind, entries in read_users(Path(file)).items():
         for user in entries.values():

@@ -8,14 +8,14 @@ from aiohttp import web
 
 from cnc_ptp.client.faults import unknown_unit
 from cnc_ptp.errors import CncError
-from cnc_ptp.web.access import Access
-from cnc_ptp.web.backplot import Drawing
-from cnc_ptp.web.guard import refuse
+from cnc_ptp.web.access.access import Access
+from cnc_ptp.web.access.guard import refuse
+from cnc_ptp.web.access.rights import require_role
 from cnc_ptp.web.hub import Hub
 from cnc_ptp.web.numbers import PROGRAM_EXISTS, TOO_LARGE, TOO_MANY_MESSAGES
-from cnc_ptp.web.programs import require_name
+from cnc_ptp.web.programs.backplot import Drawing
+from cnc_ptp.web.programs.programs import require_name
 from cnc_ptp.web.rate import Rate
-from cnc_ptp.web.rights import require_role
 
 PLAIN = "text/plain"
 

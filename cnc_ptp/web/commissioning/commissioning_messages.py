@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import asyncio
 
+from cnc_ptp.web.access.rights import require_role
 from cnc_ptp.web.page import Page
 from cnc_ptp.web.protocol import Message, answer, field
-from cnc_ptp.web.rights import require_role
 
 
 class CommissioningMessages:

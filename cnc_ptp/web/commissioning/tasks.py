@@ -13,7 +13,7 @@ from typing import Any
 
 from cnc_ptp.client.faults import unknown_unit
 from cnc_ptp.errors import CncError
-from cnc_ptp.web.changed_machine import write_changed
+from cnc_ptp.web.commissioning.changed_machine import write_changed
 from cnc_ptp.web.numbers import BAD_MESSAGE, NOT_IDENTIFIED
 from cnc_ptp.web.protocol import NOTHING, Message, error_fields, field
 

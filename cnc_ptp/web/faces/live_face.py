@@ -24,8 +24,8 @@ from cnc_ptp.nodes.client.calls_in_flight import CallsInFlight
 from cnc_ptp.nodes.client.machine_client import MachineClient, services_of
 from cnc_ptp.nodes.topics import DIAGNOSTICS, EVENT, EVENTS, LATEST, PLC_INPUT, jog_topic, program_topic
 from cnc_ptp.protocol.blocks import Event, Severity, read_values
-from cnc_ptp.web.face import News
-from cnc_ptp.web.machine_face import SOURCE, MachineFace, taken
+from cnc_ptp.web.faces.face import News
+from cnc_ptp.web.faces.machine_face import SOURCE, MachineFace, taken
 
 NODE = "web"
 MOST_DIAGNOSTICS = 100

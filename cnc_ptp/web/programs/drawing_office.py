@@ -8,8 +8,8 @@ from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.web.backplot import Drawing, draw
 from cnc_ptp.web.numbers import NOT_DRAWN
+from cnc_ptp.web.programs.backplot import Drawing, draw
 
 KEPT = 4
 """Drawings, the newest ones."""

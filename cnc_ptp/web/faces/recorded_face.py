@@ -20,12 +20,12 @@ from cnc_ptp.parameters import load_machine
 from cnc_ptp.protocol.blocks import CycleBlock, Event
 from cnc_ptp.recording.opened import OpenRecording
 from cnc_ptp.recording.parts import files_of
-from cnc_ptp.web.description import describe_commands, describe_units
-from cnc_ptp.web.face import Face, News, State
+from cnc_ptp.web.faces.description import describe_commands, describe_units
+from cnc_ptp.web.faces.face import Face, News, State
+from cnc_ptp.web.faces.scope import HEAD, Signal, signals_of
+from cnc_ptp.web.faces.unit_fields import unit_states
 from cnc_ptp.web.numbers import A_RECORDING
 from cnc_ptp.web.protocol import NOTHING
-from cnc_ptp.web.scope import HEAD, Signal, signals_of
-from cnc_ptp.web.unit_fields import unit_states
 from cnc_ptp.wire.block_codec import codec_of
 
 WINDOW = 1.0

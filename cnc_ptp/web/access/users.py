@@ -17,8 +17,8 @@ from argon2 import PasswordHasher
 from argon2.exceptions import Argon2Error, InvalidHashError
 
 from cnc_ptp.errors import CncError, nearest_name
+from cnc_ptp.web.access.rights import ROLES
 from cnc_ptp.web.numbers import BAD_USERS
-from cnc_ptp.web.rights import ROLES
 
 NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.@-]{0,31}")
 SHORTEST_PASSWORD, LONGEST_PASSWORD = 8, 256

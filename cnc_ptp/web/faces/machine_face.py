@@ -15,10 +15,10 @@ from cnc_ptp.client.link import Link, Reply
 from cnc_ptp.client.offline_link import OfflineLink
 from cnc_ptp.nodes.bridge.jog_topics import JogTopics
 from cnc_ptp.protocol.blocks import Event, Severity
-from cnc_ptp.web.description import describe_commands, describe_units
-from cnc_ptp.web.face import Face, News, State
-from cnc_ptp.web.scope import signals_of
-from cnc_ptp.web.unit_fields import unit_states
+from cnc_ptp.web.faces.description import describe_commands, describe_units
+from cnc_ptp.web.faces.face import Face, News, State
+from cnc_ptp.web.faces.scope import signals_of
+from cnc_ptp.web.faces.unit_fields import unit_states
 
 SOURCE = "web"
 """Of events that say who has given a command."""

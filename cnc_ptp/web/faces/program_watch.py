@@ -9,7 +9,7 @@ from typing import Any
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.program_files import read_file
 from cnc_ptp.web.numbers import NO_PROGRAM
-from cnc_ptp.web.programs import ProgramFolder
+from cnc_ptp.web.programs.programs import ProgramFolder
 
 
 class ProgramWatch:

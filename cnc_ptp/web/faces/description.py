@@ -13,7 +13,7 @@ from cnc_ptp.parameters.view.axis_view import axis_view, is_facing
 from cnc_ptp.parameters.view.channel_view import channel_view
 from cnc_ptp.parameters.view.spindle_view import spindle_view
 from cnc_ptp.protocol.commands import COMMANDS, INTERNAL, OF_CHANNELS, OF_PLC, Argument
-from cnc_ptp.web.rights import NOT_FROM_PAGE_ARGUMENTS, refused_from_pages
+from cnc_ptp.web.access.rights import NOT_FROM_PAGE_ARGUMENTS, refused_from_pages
 
 
 def describe_units(

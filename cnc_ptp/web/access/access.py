@@ -9,11 +9,11 @@ from math import inf
 from aiohttp import hdrs, web
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.web.logins import Login, Logins
+from cnc_ptp.web.access.logins import Login, Logins
+from cnc_ptp.web.access.users import Users
 from cnc_ptp.web.numbers import NOT_LOGGED_IN, TOO_MANY_LOGINS
 from cnc_ptp.web.protocol import NOTHING
 from cnc_ptp.web.rate import Rate
-from cnc_ptp.web.users import Users
 
 COOKIE = "cnc_ptp"
 TOKEN_HEADER = "X-Token"

@@ -1,0 +1,1 @@
+"""Commissioning from pages: identification, circle test, curves, changed machine files."""

@@ -1,0 +1,1 @@
+"""What pages see of a machine, whether it runs or was recorded."""

@@ -1,0 +1,1 @@
+"""The folder of NC programs, and programs as polylines."""
