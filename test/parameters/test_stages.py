@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 PACKAGE = Path(__file__).parents[2] / "cnc_ptp" / "parameters"
-STAGES = ("errors", "list_units", "declare", "read", "changed", "view", "check", "loader", "lists")
+STAGES = ("errors", "list_units", "declare", "read", "view", "check", "loader", "changed", "lists")
 """From the ground up."""
 
 

@@ -29,7 +29,6 @@ APART = {
     26119: "graph/test_spindles.py",
     26142: "graph/test_gap.py",
     26143: "graph/test_coupling_answers.py",
-    26194: "recording/test_on_demand.py",
     26195: "recording/test_on_demand.py",
     26196: "graph/test_recording_on_demand.py",
     26220: "client/test_recorder.py",
@@ -57,12 +56,23 @@ def text_of(node: ast.AST) -> str:
 
 
 def worded_in(tree: ast.Module) -> Iterator[int]:
-    """Numbers within a text, and numbers beside one in a tuple, list or call."""
+    """Numbers within a text, and numbers beside one, or its name, in a tuple, list or call."""
+    named = set(names_of_texts(tree))
     for node in ast.walk(tree):
         yield from map(int, IN_TEXT.findall(text_of(node)))
         beside = node.args if isinstance(node, ast.Call) else getattr(node, "elts", [])
-        if any(text_of(part).count(" ") >= 2 for part in beside):
+        if any(is_text(part) or getattr(part, "id", "") in named for part in beside):
             yield from (part.value for part in beside if is_number(part))
+
+
+def is_text(node: ast.AST) -> bool:
+    return text_of(node).count(" ") >= 2
+
+
+def names_of_texts(tree: ast.Module) -> Iterator[str]:
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Assign) and is_text(node.value):
+            yield from (target.id for target in node.targets if isinstance(target, ast.Name))
 
 
 def trees(folder: Path) -> Iterator[ast.Module]:
