@@ -31,6 +31,7 @@ class ProgramRoutes:
         self._hub, self._access = hub, access
         self._rate = Rate(1.0, 20.0)
         self._uploads = 0
+        self._drawings = Rate(10.0, 100.0)
 
     def add_to(self, app: web.Application) -> None:
         app.router.add_get("/api/programs", self._list)
@@ -92,6 +93,8 @@ class ProgramRoutes:
         channel = request.query.get("channel", "channel")
         if face.kinds.get(channel) != "channel":
             raise unknown_unit(channel, [unit for unit, kind in face.kinds.items() if kind == "channel"], "channel")
+        if not self._drawings.permits():
+            raise CncError(TOO_MANY_MESSAGES, "backplot: too many requests in a short time", "nothing was read; wait")
         load = await asyncio.to_thread(self._hub.programs.loaded_text, channel)
         files = load.files if load.files or face.is_recording else None
         drawing = Drawing(channel, face.kinds, face.sets, face.cycle_time, load.text or "", load.path, files=files)
