@@ -94,7 +94,9 @@ def test_two_pages_with_a_scope_each():
 
 
 def test_diagnostics_of_a_node():
-    status = DiagnosticStatus(level=DiagnosticStatus.WARN, name="x", message="late", values=[KeyValue(key="a", value="1")])
+    status = DiagnosticStatus(
+        level=DiagnosticStatus.WARN, name="x", message="late", values=[KeyValue(key="a", value="1")]
+    )
     assert diagnostics_fields(status) == {"name": "x", "level": 1, "text": "late", "values": {"a": "1"}}
 
 
