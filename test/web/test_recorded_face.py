@@ -129,3 +129,19 @@ def test_another_connection_reads_it_again(recording):
     first.close()
     assert asyncio.run(second.seek(1.5)) is None
     second.close()
+
+
+def test_no_snapshot_and_no_jog_of_a_recording(recording):
+    async def story():
+        async with site(connect=lambda: RecordedFace(recording)) as here:
+            page = await here.page()
+            answer = await here.client.get("/api/snapshot.mcap")
+            assert (await answer.json())["text"] == "snapshot: this is a recording; nothing was done"
+            await page.send(type="jog", axis="x", velocity=1.0, sequence=1, time=0.0)
+            assert (await page.wait_for("error"))["text"] == "x: jog: this is a recording; nothing was done"
+            await page.socket.close()
+            while here.hub.sessions:
+                await asyncio.sleep(0.01)
+            assert here.hub.right.holder is None
+
+    asyncio.run(story())

@@ -167,6 +167,9 @@ class RecordedFace(Face):
     async def ask(self, unit: str, command: str, arguments: Mapping[str, Any], *, user: str) -> Reply:
         raise is_recording(f"{unit}: {command}")
 
+    async def snapshot(self, file: str, seconds: float) -> None:
+        raise is_recording("snapshot")
+
     def jog(self, axis: str, velocity: float, *, user: str) -> None:
         raise is_recording(f"{axis}: jog")
 
