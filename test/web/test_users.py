@@ -52,8 +52,11 @@ def test_roles(users):
         assert refused["number"] == 26235
         assert (await otto.command("x", "move_absolute", target=1))["ok"]
         assert ("otto", "x", "move_absolute") in here.hub.face.users
-        event = await otto.wait_for("event", lambda event: event["source"] == "web")
-        assert event["text"] == "otto: axis x: move_absolute, carried out"
+        events = [await otto.wait_for("event", lambda event: event["source"] == "web") for _ in range(2)]
+        assert [event["text"] for event in events] == [
+            f"otto (page {otto.hello['page']}): take_command",
+            "otto: axis x: move_absolute, carried out",
+        ]
 
     run(story, users=users)
 
