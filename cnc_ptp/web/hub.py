@@ -6,13 +6,13 @@ import asyncio
 import contextlib
 import json
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, fields
 from typing import Any
 
 from cnc_ptp.client.faults import GONE
 from cnc_ptp.errors import CncError
-from cnc_ptp.protocol.blocks import ChannelBlock, CommandRecord, Event, HandshakeRequest
+from cnc_ptp.protocol.blocks import ChannelBlock, CommandRecord, CycleBlock, Event, HandshakeRequest
 from cnc_ptp.web.access.command_right import CommandRight
 from cnc_ptp.web.commissioning.tasks import Tasks
 from cnc_ptp.web.faces.alarms import Alarms, event_fields
@@ -20,6 +20,7 @@ from cnc_ptp.web.faces.face import Face, State
 from cnc_ptp.web.faces.offset_table import OffsetTable
 from cnc_ptp.web.faces.program_watch import ProgramWatch
 from cnc_ptp.web.faces.switches import Switches
+from cnc_ptp.web.faces.targets import Targets
 from cnc_ptp.web.numbers import NO_MACHINE_YET
 from cnc_ptp.web.programs.drawing_office import DrawingOffice
 from cnc_ptp.web.programs.programs import ProgramFolder
@@ -30,6 +31,8 @@ PERIOD = 0.04
 """Seconds between two states: 25 a second, so that it is more than 20 on a busy computer too."""
 AGAIN = 1.0
 """Seconds until a machine that was not found is looked for again."""
+LOGINS_PERIOD = 0.5
+"""Seconds between two looks at whether the logins of pages have ended."""
 WAITING = CncError(NO_MACHINE_YET, "no machine runs", "the page is filled as soon as there is one")
 
 
@@ -54,51 +57,61 @@ class Hub:
         self.handshakes: dict[int, dict[str, Any]] = {}
         self.tables: dict[str, OffsetTable] = {}
         self._switches = Switches()
+        self.targets = Targets([])
         self.offsets: dict[str, dict[str, Any]] = {}
         """Channel -> what lies between programmed and machine positions."""
         self._state: State = {}
         self.why_none = WAITING
         """Why there is no machine now."""
-        self._task: asyncio.Task[None] | None = None
+        self._tasks: list[asyncio.Task[None]] = []
 
     # its life
 
     def begin(self) -> None:
-        self._task = asyncio.create_task(self._live())
+        self._tasks = [asyncio.create_task(self._live()), asyncio.create_task(self._watch_logins())]
 
     async def end(self) -> None:
         """All sessions end; their jogs too."""
         for session in [*self.sessions]:
             await session.close()
-        if self._task is not None:
-            self._task.cancel()
+        for task in self._tasks:
+            task.cancel()
             with contextlib.suppress(asyncio.CancelledError):
-                await self._task
+                await task
         self.office.close()
         self.tasks.close()
         if self.face is not None:
             await asyncio.to_thread(self.face.close)
             self.face = None
 
+    async def _watch_logins(self) -> None:
+        while True:
+            await asyncio.sleep(LOGINS_PERIOD)
+            for session in [*self.sessions]:
+                session.end_without_login()
+
     async def _live(self) -> None:
         while True:
             try:
                 face = await asyncio.to_thread(self._connect)
+                await self._live_with(face)
             except CncError as error:
                 self.why_none = error
                 await asyncio.sleep(AGAIN)
-                continue
-            await self._live_with(face)
+            except Exception as error:  # a mistake of ours: pages are told, and it is tried again
+                traceback.print_exc()
+                self.face, self.why_none = None, server_failed(error)
+                await asyncio.sleep(AGAIN)
 
     async def _live_with(self, face: Face) -> None:
         self.face, self._state, self.alarms = face, {}, Alarms()
         self.handshakes.clear()
-        self.programs.forget()
+        self.programs.forget(is_recording=face.is_recording)
         self.offsets.clear()
         self._switches = Switches()
+        self.targets = Targets([unit for unit, kind in face.kinds.items() if kind == "axis"])
         channels = [unit for unit, kind in face.kinds.items() if kind == "channel"]
         self.tables = {unit: OffsetTable(face.sets[unit], face.sets) for unit in channels}
-        self.programs.text_of = face.text_of
         for session in self.sessions:
             session.send({"type": "back"})
             session.send(self.hello(session))
@@ -113,7 +126,7 @@ class Hub:
             await asyncio.to_thread(face.close)
         except Exception as error:  # a mistake of ours must not leave pages that show the past
             traceback.print_exc()
-            self._tell_gone(CncError(GONE, f"the server has failed: {error!r}", "the machine continues"))
+            self._tell_gone(server_failed(error))
             await asyncio.to_thread(face.close)
         finally:
             running.cancel()
@@ -149,23 +162,30 @@ class Hub:
         for request in news.requests:
             self._tell_request(request)
         for record in news.records:
-            self._tell_answered(record)
+            self._tell_answered(record, news.blocks)
         for unit, block in news.blocks:
             if isinstance(block, ChannelBlock):
                 self._tell_offsets(unit, block)
+                self._drop_handshakes(unit, block)
         if news.diagnostics:
             self.to_all({"type": "diagnostics", "nodes": [*news.diagnostics]})
-        state = {unit: {**fields, **self._switches.fields.get(unit, {})} for unit, fields in face.state().items()}
+        state = {
+            unit: {**fields, **self._switches.fields.get(unit, {}), **self.targets.fields(unit)}
+            for unit, fields in face.state().items()
+        }
         changes = difference(state, self._state)
         self._state = state
-        for program in self.programs.changes(changes):
+        self._tell_programs(face, changes)
+        for session in [*self.sessions]:
+            session.send_state(face.time, state, changes)
+            session.take_blocks(news.blocks)
+
+    def _tell_programs(self, face: Face, changes: State) -> None:
+        self.programs.take_state(changes, face.loads())
+        for program in self.programs.news():
             if self.sessions:
                 self.office.prepare()
             self.to_all({"type": "program", **program})
-        for session in [*self.sessions]:
-            session.end_without_login()
-            session.send_state(face.time, state, changes)
-            session.take_blocks(news.blocks)
 
     def _tell_event(self, event: Event, cycle_time: float) -> None:
         fields = event_fields(event, cycle_time)
@@ -178,15 +198,26 @@ class Hub:
             self.handshakes[request.id] = request_fields(request)
             self.to_all({"type": "handshake", **request_fields(request)})
 
-    def _tell_answered(self, record: CommandRecord) -> None:
+    def _tell_answered(self, record: CommandRecord, blocks: Sequence[tuple[str, CycleBlock]]) -> None:
         """A request that was acknowledged, an offset that was changed, by whomever."""
         self._switches.take_record(record)
+        self.targets.take_record(record, blocks, self._state)
+        self.programs.take_record(record)
         if record.target in self.tables:
             self.tables[record.target].take_record(record)
         if record.command == "acknowledge" and record.accepted:
-            number = json.loads(record.arguments_json).get("id")
-            if self.handshakes.pop(number, None) is not None:
-                self.to_all({"type": "handshake_done", "id": number})
+            self._end_handshake(json.loads(record.arguments_json).get("id"))
+
+    def _end_handshake(self, number: int) -> None:
+        if self.handshakes.pop(number, None) is not None:
+            self.to_all({"type": "handshake_done", "id": number})
+
+    def _drop_handshakes(self, channel: str, block: ChannelBlock) -> None:
+        """Those of a program that has ended, or was reset: nobody waits for them."""
+        if block.done:
+            for number, request in [*self.handshakes.items()]:
+                if request["channel"] == channel and request["cycle"] < block.first_cycle:
+                    self._end_handshake(number)
 
     def _tell_offsets(self, channel: str, block: ChannelBlock) -> None:
         for offsets in block.offsets:
@@ -197,6 +228,11 @@ class Hub:
     def to_all(self, message: Mapping[str, Any]) -> None:
         for session in self.sessions:
             session.send(message)
+
+    def note(self, text: str) -> None:
+        """For the recording: who has done what besides commands."""
+        if self.face is not None:
+            self.face.note(round(self.face.time / self.face.cycle_time), text)
 
     def tell_operator(self) -> None:
         self.to_all({"type": "operator", **self.right.shown()})
@@ -224,6 +260,10 @@ class Hub:
             number = GONE if self.why_none.number == GONE else NO_MACHINE_YET
             raise CncError(number, self.why_none.reason, "nothing was sent")
         return self.face
+
+
+def server_failed(error: Exception) -> CncError:
+    return CncError(GONE, f"the server has failed: {error!r}", "the machine continues")
 
 
 def request_fields(request: HandshakeRequest) -> dict[str, Any]:

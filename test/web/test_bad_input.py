@@ -42,9 +42,9 @@ def test_the_port_is_taken():
 @pytest.mark.parametrize(
     ("sent", "text"),
     [
-        ("{", "message '{' is no JSON; nothing was done"),
-        ('{"type": NaN}', "message '{\"type\": NaN}' is no JSON; nothing was done"),
-        ("[]", "message '[]' is no object; nothing was done"),
+        ("{", "message '{' is not JSON; nothing was done"),
+        ('{"type": NaN}', "message '{\"type\": NaN}' is not JSON; nothing was done"),
+        ("[]", "message '[]' is not an object; nothing was done"),
         ('{"id": 1}', "message '{\"id\": 1}' has no type; nothing was done"),
         ('{"type": "jog"}', "jog: axis is missing; nothing was done"),
         ('{"type": "jog", "axis": 3}', "jog: axis = '3' is not a text; nothing was done"),
@@ -139,7 +139,7 @@ def test_a_wrong_token(first, number, text):
 
 def test_no_cookie():
     async def story(here):
-        for path in ("/api/session", "/api/programs", "/ws"):
+        for path in ("/api/programs", "/api/backplot", "/ws"):
             answer = await here.client.get(path)
             text = "there is no login, or it has ended; nothing was done; log in"
             assert (answer.status, (await answer.json())["text"]) == (401, text)
@@ -199,6 +199,7 @@ def test_an_upload(tmp_path):
             assert answer.status == status
         text = "program 'a.nc' is in the folder already; nothing was written"
         assert ((await answer.json())["number"], (await answer.json())["text"]) == (26257, text)
+        await here.page()  # with the command
         answer = await here.client.post("/api/programs?name=a.nc&replace=1", data=b"G4 X1\nM30\n", headers=token)
         assert await answer.json() == {"name": "a.nc", "size": 10}
         assert (tmp_path / "a.nc").read_bytes() == b"G4 X1\nM30\n"
@@ -332,8 +333,8 @@ def test_headers_of_every_answer():
 @pytest.mark.parametrize(
     ("options", "text"),
     [
-        (("0.0.0.0", None, None, None), "web: others reach 0.0.0.0, and --tls-cert, --tls-key, --users is missing; nothing was started; off loopback it needs TLS and users"),
-        (("192.168.0.5", "c.pem", "k.pem", None), "web: others reach 192.168.0.5, and --users is missing; nothing was started; off loopback it needs TLS and users"),
+        (("0.0.0.0", None, None, None), "web: 0.0.0.0 can be reached by others, and --tls-cert, --tls-key, --users are missing; nothing was started; off loopback it needs TLS and users"),
+        (("192.168.0.5", "c.pem", "k.pem", None), "web: 192.168.0.5 can be reached by others, and --users is missing; nothing was started; off loopback it needs TLS and users"),
         (("127.0.0.1", "c.pem", None, None), "web: --tls-cert and --tls-key belong together; nothing was started"),
     ],
 )  # fmt: skip
@@ -367,7 +368,10 @@ def test_too_many_pages(monkeypatch):
     async def story(here):
         await here.page()
         answer = await here.client.get("/ws")
-        assert (answer.status, (await answer.json())["text"]) == (503, "1 pages are open; nothing was done; close one")
+        assert (answer.status, (await answer.json())["text"]) == (
+            503,
+            "the limit of open pages is reached, 1; nothing was done; close one",
+        )
 
     monkeypatch.setattr("cnc_ptp.web.server.MOST_SESSIONS", 1)
     run(story)

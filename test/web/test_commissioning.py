@@ -50,3 +50,19 @@ def test_the_machine_file_itself_is_never_written(machine, tmp_path):
         write_changed(tmp_path / "mill.yaml", VALUES, "mill.yaml")
     assert refused.value.message == "mill.yaml is there already; nothing was written; give another name"
     assert (tmp_path / "mill.yaml").read_text() == before
+
+
+def test_a_task_is_cancelled(machine):
+    async def story():
+        async with site(machine=str(machine)) as here:
+            page = await here.page()
+            task = (await page.ask("identify", axis="x", what="dynamics"))["task"]
+            progress = await page.wait_for("progress")
+            assert progress["text"] == "identify dynamics x runs"
+            assert (await page.ask("cancel_task", task=task))["ok"]
+            result = await page.wait_for("result")
+            text = f"task {task} was cancelled; nothing was found"
+            assert (result["ok"], result["number"], result["text"]) == (False, 26256, text)
+            assert (await page.ask("identify", axis="x", what="friction"))["ok"]
+
+    asyncio.run(story())
