@@ -378,6 +378,10 @@ class Fake:
                 ]
                 await self.tell({"type": "diagnostics", "nodes": nodes})
 
+    async def step(self) -> None:
+        """The state as it is with the next cycles."""
+        await self._tell_state()
+
     async def _tell_state(self) -> None:
         angle = self.time * 0.5
         places = {"x": 50 * cos(angle), "y": 50 * sin(angle), "z": -5.0}

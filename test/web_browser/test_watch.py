@@ -47,7 +47,7 @@ def test_only_what_is_done_is_drawn(look, server, fake):
 
 def test_an_older_path_does_not_overwrite_a_newer_one_and_an_error_leaves_none(look, server, fake):
     page = look("watch")
-    page.wait_for_selector("text=2,990 segments")
+    page.wait_for_selector("text=2,999 segments")
     fake.backplot_delays = [1.0, 0.0]
     told = {"type": "program", "channel": "channel", "name": "bracket.nc"}
     server.do(fake.tell(told))

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 from browser_support import InThread, open_page, until
-from web_support import EXAMPLES, MILL
+from fake_machine import Fake
+from web_support import EXAMPLES, MILL, ROOT
 
 from cnc_ptp.web.access.access import Access
 from cnc_ptp.web.access.guard import Names
@@ -20,14 +21,24 @@ from cnc_ptp.web.server import Server
 
 @pytest.fixture
 def programs(tmp_path):
-    for name in ("bracket.nc", "cover.nc"):
+    for name in ("bracket.nc", "cover.nc", "turned_part.nc"):
         shutil.copy(Path(EXAMPLES) / name, tmp_path / name)
     return tmp_path
 
 
 @pytest.fixture
 def mill(browser, programs):
-    hub = Hub(lambda: offline_face(MILL), name="mill", folder=ProgramFolder(str(programs)), machine_file=MILL)
+    yield from pages_of(browser, programs, MILL)
+
+
+@pytest.fixture
+def lathe(browser, programs):
+    yield from pages_of(browser, programs, str(ROOT / "config" / "lathe.yaml"))
+
+
+def pages_of(browser, programs, machine):
+    """Opens pages of an offline machine; `hub` and `server` are those of the pages."""
+    hub = Hub(lambda: offline_face(machine), name="machine", folder=ProgramFolder(str(programs)), machine_file=machine)
     with InThread(Server(hub, Access(None), Names()).app) as server:
         pages = []
 
@@ -230,3 +241,74 @@ def test_the_circle_test_draws_its_deviations(mill):
     page.wait_for_selector("text=Deviations are drawn 500 times as large.")
     radius = float(page.locator(".reading:has-text('Radius') output").inner_text())
     assert abs(radius - 5) < 0.05
+
+
+def test_a_program_waits_for_somebody_who_acknowledges_its_tool(mill, programs):
+    (programs / "tool.nc").write_text("%TOOL\nN10 M6\nN20 G0 X2\nN30 M30\n", encoding="utf-8")
+    page = mill()
+    load(page, "tool.nc")
+    page.evaluate("() => void app.command('plc', 'auto_acknowledge', { enabled: false })")
+    page.click("button.primary >> text=Start")
+    page.wait_for_selector(".handshakes >> text=M6")
+    page.click(".handshakes >> text=Acknowledge")
+    page.wait_for_selector(".handshakes li", state="detached")
+    until(page, "Math.abs(app.store.units.x.set_position - 2) < 1e-9 && !app.store.units.channel.active")
+
+
+def test_the_path_of_a_turned_part_is_seen_as_a_lathe(lathe):
+    page = lathe()
+    load(page, "turned_part.nc")
+    page.keyboard.press("Alt+Digit2")
+    page.wait_for_selector("[data-ms]")
+    assert page.input_value("[aria-label=View]") == "turning"
+    assert page.evaluate("document.querySelector('.backplot').scene._view") == "turning"
+
+
+def test_the_simulated_drive_and_a_service_channel_that_is_not_there(mill):
+    page = mill("commission")
+    page.click("[role=tab]:text-is('Drive')")
+    page.wait_for_selector("th:has-text('P-SIM')")
+    service = page.locator("section:has(h2:text-is('Service channel (SERCOS)'))")
+    service.locator("button:text-is('Read')").click()
+    page.wait_for_selector(".notice.error")
+    assert service.locator("output").inner_text() == ""
+
+
+def test_an_empty_position_is_not_zero(mill):
+    page = mill("commission")
+    page.click("[role=tab]:text-is('PTP test')")
+    page.fill("label:text-is('Position 2') + input", "")
+    page.click("button.primary >> text=Start")
+    page.wait_for_timeout(300)
+    page.wait_for_selector("text=Not started.")
+    assert page.evaluate("document.activeElement.required && document.activeElement.value === ''")
+    assert "move_absolute" not in [command for _, _, command in mill.hub.face.users]
+
+
+async def hello_of(hub):
+    return hub.hello(hub.sessions[0])
+
+
+def keys_of(fields):
+    """Names of fields, those of what lies in them too, as far as they are no names of units."""
+    return {name: sorted(value) if isinstance(value, dict) else None for name, value in fields.items()}
+
+
+def test_the_machine_that_is_made_up_tells_what_a_real_one_tells(mill):
+    page = mill()
+    until(page, "app.store.units.x !== undefined && app.store.units.plc !== undefined")
+    fake = Fake()
+    mill.server.do(fake.step())
+    told, made_up = mill.server.do(hello_of(mill.hub)), fake.hello(1)
+    assert set(made_up) == set(told)
+    assert set(made_up["machine"]) == set(told["machine"])
+    for name in ("plc", "channel", "s", "x"):
+        real = next(unit for unit in told["machine"]["units"] if unit["name"] == name)
+        one = next(unit for unit in made_up["machine"]["units"] if unit["name"] == name)
+        assert keys_of(one) == keys_of(real), name
+        assert set(fake.state[name]) == set(page.evaluate(f"app.store.units.{name}")), name
+    assert made_up["machine"]["signals"]["x"][0].keys() == told["machine"]["signals"]["x"][0].keys()
+    assert set(made_up["machine"]["commands"]) == set(told["machine"]["commands"])
+    for kind, commands in made_up["machine"]["commands"].items():
+        for command, arguments in commands.items():
+            assert set(arguments) <= set(told["machine"]["commands"][kind][command]), command
