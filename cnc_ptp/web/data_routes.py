@@ -89,7 +89,7 @@ def number(text: str) -> float:
     except ValueError:
         value = float("nan")
     if not -1e12 < value < 1e12:
-        raise CncError(BAD_MESSAGE, f"'{text[:40]}' is no number", NOTHING)
+        raise CncError(BAD_MESSAGE, f"'{text[:40]}' is not a number", NOTHING)
     return value
 
 

@@ -93,12 +93,11 @@ class Hub:
     async def _live_with(self, face: Face) -> None:
         self.face, self._state, self.alarms = face, {}, Alarms()
         self.handshakes.clear()
-        self.programs.forget()
+        self.programs.forget(is_recording=face.is_recording)
         self.offsets.clear()
         self._switches = Switches()
         channels = [unit for unit, kind in face.kinds.items() if kind == "channel"]
         self.tables = {unit: OffsetTable(face.sets[unit], face.sets) for unit in channels}
-        self.programs.text_of = face.text_of
         for session in self.sessions:
             session.send({"type": "back"})
             session.send(self.hello(session))
@@ -158,14 +157,18 @@ class Hub:
         state = {unit: {**fields, **self._switches.fields.get(unit, {})} for unit, fields in face.state().items()}
         changes = difference(state, self._state)
         self._state = state
-        for program in self.programs.changes(changes):
-            if self.sessions:
-                self.office.prepare()
-            self.to_all({"type": "program", **program})
+        self._tell_programs(face, changes)
         for session in [*self.sessions]:
             session.end_without_login()
             session.send_state(face.time, state, changes)
             session.take_blocks(news.blocks)
+
+    def _tell_programs(self, face: Face, changes: State) -> None:
+        self.programs.take_state(changes, face.loads())
+        for program in self.programs.news():
+            if self.sessions:
+                self.office.prepare()
+            self.to_all({"type": "program", **program})
 
     def _tell_event(self, event: Event, cycle_time: float) -> None:
         fields = event_fields(event, cycle_time)
@@ -181,6 +184,7 @@ class Hub:
     def _tell_answered(self, record: CommandRecord) -> None:
         """A request that was acknowledged, an offset that was changed, by whomever."""
         self._switches.take_record(record)
+        self.programs.take_record(record)
         if record.target in self.tables:
             self.tables[record.target].take_record(record)
         if record.command == "acknowledge" and record.accepted:

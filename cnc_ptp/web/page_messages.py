@@ -99,7 +99,6 @@ class PageMessages:
             arguments["dialect"] = dialect
         if text is not None:
             arguments["text"] = text
-            self._hub.programs.give_text(path, text)
         return self._ask(message, channel, "load", arguments)
 
     def _offsets(self, message: Message) -> None:

@@ -34,9 +34,9 @@ def read_body(text: str) -> Message:
     try:
         message = json.loads(text, parse_constant=refuse_constant)
     except (ValueError, RecursionError):
-        raise CncError(BAD_MESSAGE, f"message {text[:40]!r} is no JSON", NOTHING) from None
+        raise CncError(BAD_MESSAGE, f"message {text[:40]!r} is not JSON", NOTHING) from None
     if not isinstance(message, dict):
-        raise CncError(BAD_MESSAGE, f"message {text[:40]!r} is no object", NOTHING)
+        raise CncError(BAD_MESSAGE, f"message {text[:40]!r} is not an object", NOTHING)
     return message
 
 
@@ -89,11 +89,11 @@ def refusal(message: Message, error: CncError) -> Message:
 
 
 def frame(message: Mapping[str, Any]) -> str:
-    """As it is sent. Values unknown to JSON (NaN, Infinity) are null."""
+    """As it is sent, in ASCII: half a character of a page cannot be sent otherwise. NaN and Infinity are null."""
     try:
-        return json.dumps(message, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
+        return json.dumps(message, separators=(",", ":"), allow_nan=False)
     except ValueError:
-        return json.dumps(without_nan(message), separators=(",", ":"), ensure_ascii=False)
+        return json.dumps(without_nan(message), separators=(",", ":"))
 
 
 def without_nan(value: Any) -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import traceback
 from collections import deque
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -16,7 +17,7 @@ from cnc_ptp.web.access.access import Access
 from cnc_ptp.web.access.logins import Login
 from cnc_ptp.web.faces.face import State
 from cnc_ptp.web.faces.scope import Stream
-from cnc_ptp.web.numbers import SESSION_ENDED, TOO_MANY_MESSAGES
+from cnc_ptp.web.numbers import SERVER_FAILED, SESSION_ENDED, TOO_MANY_MESSAGES
 from cnc_ptp.web.page import Shared
 from cnc_ptp.web.page_messages import PageMessages
 from cnc_ptp.web.protocol import Message, error_fields, frame, read_message, refusal
@@ -27,6 +28,8 @@ BURST = 400
 """Messages of a page; jogs of several axes are 20 a second each."""
 MOST_WAITING = 400
 """Frames that a page may be behind; more, and its states are left out until it follows again."""
+MOST_OUTGOING = 10_000
+"""Frames of any kind that a page may be behind; more, and it is cut off."""
 LONGEST_STALL = 10.0
 """Seconds that a page may take nothing."""
 
@@ -43,13 +46,12 @@ class Session:
         self.is_behind = True
         """It gets the whole state next."""
         self.scope: Stream | None = None
-        self._is_ending = False
+        self._is_ending = self._is_cut_off = False
         self._socket = socket
         self._outgoing: deque[str | bytes] = deque()
         self._something = asyncio.Event()
         self._rate = Rate(MOST_PER_SECOND, BURST)
         self._messages = PageMessages(self)
-        self._tasks: set[asyncio.Task[None]] = set()
 
     @property
     def label(self) -> str:
@@ -66,6 +68,13 @@ class Session:
 
     def send_frame(self, data: str | bytes) -> None:
         """In the order of the calls."""
+        if self._is_cut_off:
+            return
+        if len(self._outgoing) >= MOST_OUTGOING:
+            self._is_cut_off = True
+            self._outgoing.clear()
+            self.hub.keep(asyncio.create_task(self.abort()))
+            return
         self._outgoing.append(data)
         self._something.set()
 
@@ -100,8 +109,7 @@ class Session:
             await self._read()
         finally:
             self._messages.end()
-            for task in [writer, *self._tasks]:
-                task.cancel()
+            writer.cancel()
 
     async def _read(self) -> None:
         async for received in self._socket:
@@ -134,8 +142,7 @@ class Session:
             self._is_ending = True
             self._messages.end()
             self.send({"type": "error", **error_fields(error)})
-            task = asyncio.create_task(self._say_goodbye())
-            self._tasks.add(task)
+            self.hub.keep(asyncio.create_task(self._say_goodbye()))
 
     async def _say_goodbye(self) -> None:
         await asyncio.sleep(0)  # the error is sent first
@@ -152,16 +159,19 @@ class Session:
         except CncError as error:
             self._refuse(message, error)
             return
+        except Exception as error:  # a mistake of ours is answered too
+            self._refuse(message, failed(error))
+            return
         if handled is not None:
-            task = asyncio.create_task(self._answer(message, handled))
-            self._tasks.add(task)
-            task.add_done_callback(self._tasks.discard)
+            self.hub.keep(asyncio.create_task(self._answer(message, handled)))  # to its end, without its page too
 
     async def _answer(self, message: Message, handled: Any) -> None:
         try:
             self.send(await handled)
         except CncError as error:
             self._refuse(message, error)
+        except Exception as error:  # as in _take
+            self._refuse(message, failed(error))
 
     def _refuse(self, message: Message, error: CncError) -> None:
         known = message.get("id") is not None
@@ -176,7 +186,7 @@ class Session:
                 sending = self._socket.send_bytes(data) if isinstance(data, bytes) else self._socket.send_str(data)
                 try:
                     await asyncio.wait_for(sending, LONGEST_STALL)
-                except (TimeoutError, ConnectionError, RuntimeError):
+                except Exception:  # the socket, or what was to be sent
                     await self.abort()
                     return
 
@@ -190,3 +200,9 @@ class Session:
         self._messages.end()
         with suppress(ConnectionError, asyncio.TimeoutError):
             await asyncio.wait_for(self.close(), 1.0)
+
+
+def failed(error: Exception) -> CncError:
+    """What a page is told of a mistake of ours."""
+    traceback.print_exception(error)
+    return CncError(SERVER_FAILED, f"the server has failed: {error!r}", "whether it was carried out is not known")

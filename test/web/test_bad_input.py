@@ -42,9 +42,9 @@ def test_the_port_is_taken():
 @pytest.mark.parametrize(
     ("sent", "text"),
     [
-        ("{", "message '{' is no JSON; nothing was done"),
-        ('{"type": NaN}', "message '{\"type\": NaN}' is no JSON; nothing was done"),
-        ("[]", "message '[]' is no object; nothing was done"),
+        ("{", "message '{' is not JSON; nothing was done"),
+        ('{"type": NaN}', "message '{\"type\": NaN}' is not JSON; nothing was done"),
+        ("[]", "message '[]' is not an object; nothing was done"),
         ('{"id": 1}', "message '{\"id\": 1}' has no type; nothing was done"),
         ('{"type": "jog"}', "jog: axis is missing; nothing was done"),
         ('{"type": "jog", "axis": 3}', "jog: axis = '3' is not a text; nothing was done"),

@@ -10,6 +10,7 @@ from web_support import MILL, site
 from cnc_ptp.errors import CncError
 from cnc_ptp.web.commissioning.tasks import Tasks
 from cnc_ptp.web.faces.machine_face import offline_face
+from cnc_ptp.web.faces.program_watch import Load
 from cnc_ptp.web.options import require_packages
 from cnc_ptp.web.programs.programs import ProgramFolder
 
@@ -136,16 +137,16 @@ def test_a_program_that_cannot_be_drawn():
         page = await here.page()
         assert (await page.ask("load", name="part.nc", text="G1 X10 F600\nM30\n"))["ok"]
         await page.wait_for("program")
-        here.hub.programs.give_text(here.hub.programs.loaded["channel"], "G1 X1O F600\n")
+        path = here.hub.programs.loaded["channel"].path
+        here.hub.programs.take("channel", Load(path, "G1 X1O F600\n"))
         answer = await here.client.get("/api/backplot")
         error = await answer.json()
         assert error["number"] == 26253
         assert error["text"].startswith("backplot of ") and error["text"].endswith("; nothing is shown")
-        here.hub.programs.give_text(here.hub.programs.loaded["channel"], "G1 X10 F600\nM30\n")
+        here.hub.programs.take("channel", Load(path, "G1 X10 F600\nM30\n"))
         [drawing] = here.hub.office._pool._processes
         os.kill(drawing, signal.SIGKILL)
         answer = await here.client.get("/api/backplot")
-        path = here.hub.programs.loaded["channel"]
         text = f"backplot of {path}: the process that draws has ended; ask again"
         assert (await answer.json())["text"] == text
         assert (await here.client.get("/api/backplot")).status == 200

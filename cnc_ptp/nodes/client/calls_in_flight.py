@@ -49,7 +49,7 @@ class CallsInFlight:
     def begin(
         self, client: MachineClient, unit: str, command: str, arguments: Mapping[str, Any], answer: Future[Any]
     ) -> None:
-        """`answer` gets the response, or CncError 26136 when none comes in time."""
+        """`answer` gets the response, or CncError 26136 when none comes in time. Its caller has set it running."""
         self.prepare(client, unit, command)
         patience = COUPLING_PATIENCE + MARGIN if command in COUPLING_SERVICES else PATIENCE
         request = request_of(services_of(client.kinds[unit])[command], arguments)
@@ -75,6 +75,8 @@ class CallsInFlight:
 
     @staticmethod
     def _has_ended(call: Call) -> bool:
+        if call.answer.cancelled():
+            return True
         if call.sent is None and call.client.service_is_ready():
             call.sent = call.client.call_async(call.request)
         if call.sent is not None and call.sent.done():

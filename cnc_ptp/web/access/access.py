@@ -75,7 +75,7 @@ class Access:
     @staticmethod
     def require_token(login: Login, token: str) -> None:
         """Raises CncError 26238."""
-        if not secrets.compare_digest(token.encode(), login.token.encode()):
+        if not secrets.compare_digest(token.encode(errors="surrogatepass"), login.token.encode()):
             raise CncError(NOT_LOGGED_IN, "the token of the page is wrong", f"{NOTHING}; load the page again")
 
     async def log_in(self, name: str, password: str) -> str:

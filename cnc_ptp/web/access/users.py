@@ -75,7 +75,8 @@ class Users:
         self._read_if_changed()
         user = self._users.get(name)
         try:
-            HASHER.verify(self._decoy if user is None else user.hash, password[:LONGEST_PASSWORD])
+            given = password[:LONGEST_PASSWORD].encode(errors="surrogatepass")
+            HASHER.verify(self._decoy if user is None else user.hash, given)
         except (Argon2Error, InvalidHashError):
             return None
         return user
@@ -88,7 +89,7 @@ class Users:
 
 
 def token_hash(token: str) -> str:
-    return hashlib.sha256(token.encode()).hexdigest()
+    return hashlib.sha256(token.encode(errors="surrogatepass")).hexdigest()
 
 
 def read_users(file: Path) -> dict[str, dict[str, User]]:

@@ -11,6 +11,7 @@ from cnc_ptp.client.link import Reply
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import ParameterSet
 from cnc_ptp.protocol.blocks import CommandRecord, CycleBlock, Event, HandshakeRequest
+from cnc_ptp.web.faces.program_watch import Load
 from cnc_ptp.web.numbers import NO_SNAPSHOT
 
 State = Mapping[str, Mapping[str, Any]]
@@ -59,7 +60,7 @@ class Face(ABC):
 
     @abstractmethod
     async def ask(self, unit: str, command: str, arguments: Mapping[str, Any], *, user: str) -> Reply:
-        """Gives a command. Raises the refusal of the unit, and CncError 22001, 22002, 26111, 26136, 26171."""
+        """Gives a command. Raises the refusal of the unit, and CncError 22001, 22002, 26111, 26136, 26171, 26261."""
 
     async def snapshot(self, file: str, seconds: float) -> None:
         """The recorder writes its last seconds into a file; 0: all. Raises its refusal, CncError 26136, 26258."""
@@ -70,9 +71,9 @@ class Face(ABC):
     def jog(self, axis: str, velocity: float, *, user: str) -> None:
         """One message of a jog (mm/s, deg/s; 0 ends it); the axis stops 0.2 s after the last one."""
 
-    def text_of(self, path: str) -> str | None:
-        """Of a program that was loaded, where the machine does not take it from a file."""
-        return None
+    def loads(self) -> Mapping[str, Load]:
+        """Channel -> the program that it has, of a recording; a machine that runs tells it by its records."""
+        return {}
 
     @abstractmethod
     def note(self, cycle: int, text: str) -> None:

@@ -91,6 +91,8 @@ class WebLink(GraphLink):
     def _begin_call(
         self, unit: str, command: str, arguments: Mapping[str, Any], answer: Future[Any], client: MachineClient
     ) -> None:
+        if not answer.set_running_or_notify_cancel():
+            return  # nobody waits for it, and it was not sent
         try:
             self._calls.begin(client, unit, command, arguments, answer)
         except Exception as error:  # for the page that has asked
@@ -99,6 +101,7 @@ class WebLink(GraphLink):
     def snapshot(self, file: str, seconds: float) -> Future[Any]:
         """The response of the recorder."""
         answer: Future[Any] = Future()
+        answer.set_running_or_notify_cancel()
         self._thread.call(lambda client: self._calls.begin_snapshot(client, file, seconds, answer))
         return answer
 

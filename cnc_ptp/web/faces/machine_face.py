@@ -13,12 +13,15 @@ from cnc_ptp.client import Machine
 from cnc_ptp.client.faults import error_of, unknown_unit
 from cnc_ptp.client.link import Link, Reply
 from cnc_ptp.client.offline_link import OfflineLink
+from cnc_ptp.errors import CncError
 from cnc_ptp.nodes.bridge.jog_topics import JogTopics
 from cnc_ptp.protocol.blocks import Event, Severity
+from cnc_ptp.web.access.rights import is_stop
 from cnc_ptp.web.faces.description import describe_commands, describe_units
 from cnc_ptp.web.faces.face import Face, News, State
 from cnc_ptp.web.faces.scope import signals_of
 from cnc_ptp.web.faces.unit_fields import unit_states
+from cnc_ptp.web.numbers import STOPPED
 
 SOURCE = "web"
 """Of events that say who has given a command."""
@@ -36,6 +39,8 @@ class MachineFace(Face):
         self._events = seen.events()
         self._records = seen.records()
         self._blocks = {unit: seen.blocks_of(unit) for unit in self.kinds}
+        self._stops = dict.fromkeys(self.kinds, 0)
+        """How often a unit was stopped."""
         self._turns = {unit: asyncio.Lock() for unit in self.kinds}
         self.sets = {unit: self._link.parameters_of(unit) for unit, kind in self.kinds.items() if kind != "plc"}
         self._units = describe_units(self.kinds, self.sets, self.cycle_time)
@@ -73,12 +78,29 @@ class MachineFace(Face):
         if unit not in self.kinds:
             raise unknown_unit(unit, self.kinds)
         given = self._machine[unit]._prepared(command, dict(arguments))
-        async with self._turns[unit]:
-            reply = await self._answer_to(unit, command, given, user)
+        try:
+            reply = await self._in_turn(unit, command, given, user)
+        except CncError as error:
+            end = f"no answer, P-ERR-{error.number}"
+            self.note(round(self.time / self.cycle_time), f"{user}: {self.kinds[unit]} {unit}: {command}, {end}")
+            raise
         self.note(reply.cycle, who_text(user, self.kinds[unit], unit, command, reply.error_id))
         if reply.error_id:
             raise error_of(reply.error_id, reply.message, reply.values)
         return reply
+
+    async def _in_turn(self, unit: str, command: str, arguments: Mapping[str, Any], user: str) -> Reply:
+        """Commands of a unit one after the other. A stop waits for none; those that wait then are not sent."""
+        kind = self.kinds[unit]
+        if is_stop(kind, command, arguments):
+            for stopped in stopped_by(kind, unit, command, self.kinds):
+                self._stops[stopped] += 1
+            return await self._answer_to(unit, command, arguments, user)
+        stops = self._stops[unit]
+        async with self._turns[unit]:
+            if self._stops[unit] != stops:
+                raise CncError(STOPPED, f"{kind} {unit}: {command}: a stop came before it", "it was not sent")
+            return await self._answer_to(unit, command, arguments, user)
 
     def note(self, cycle: int, text: str) -> None:
         """An event of this process, for recordings: who has done what."""
@@ -92,6 +114,13 @@ class MachineFace(Face):
 
     def close(self) -> None:
         self._machine.close()
+
+
+def stopped_by(kind: str, unit: str, command: str, kinds: Mapping[str, str]) -> list[str]:
+    """The units whose waiting commands a stop drops: its own, all of an emergency stop, none of a feed hold."""
+    if kind == "plc":
+        return [*kinds]
+    return [] if command == "feed_hold" else [unit]
 
 
 def who_text(user: str, kind: str, unit: str, command: str, error_id: int) -> str:

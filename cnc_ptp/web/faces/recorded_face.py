@@ -22,6 +22,7 @@ from cnc_ptp.recording.opened import OpenRecording
 from cnc_ptp.recording.parts import files_of
 from cnc_ptp.web.faces.description import describe_commands, describe_units
 from cnc_ptp.web.faces.face import Face, News, State
+from cnc_ptp.web.faces.program_watch import Load, load_of
 from cnc_ptp.web.faces.scope import HEAD, Signal, signals_of
 from cnc_ptp.web.faces.unit_fields import unit_states
 from cnc_ptp.web.numbers import A_RECORDING
@@ -61,6 +62,8 @@ class RecordedFace(Face):
         self._windows: OrderedDict[int, Blocks] = OrderedDict()
         self._time = self._told = 0.0
         self._speed = 0.0
+        self._reading = asyncio.Lock()
+        self._seeks = 0
         self._windows[0] = self._read_window(0)
 
     def machine(self) -> dict[str, Any]:
@@ -83,8 +86,12 @@ class RecordedFace(Face):
     async def seek(self, time: float) -> None:
         """Another time, within the recording."""
         wanted = min(max(0.0, time), self.end)
+        self._seeks += 1
+        seek = self._seeks
         await self._have(wanted)
-        self._time = self._told = wanted
+        if seek == self._seeks:  # no page has looked elsewhere meanwhile
+            self._time = self._told = wanted
+            self._seeks += 1  # a step of the play that has begun meanwhile does not count
 
     def play(self, speed: float) -> None:
         """Seconds of the recording in a second; 0 stops it."""
@@ -99,19 +106,21 @@ class RecordedFace(Face):
             await asyncio.sleep(STEP)
             now = loop.time()
             if self._speed:
-                wanted = min(self.end, self._time + self._speed * (now - before))
+                wanted, seeks = min(self.end, self._time + self._speed * (now - before)), self._seeks
                 await self._have(wanted)
-                self._time = wanted
-                self._speed *= wanted < self.end
+                if seeks == self._seeks:
+                    self._time = wanted
+                    self._speed *= wanted < self.end
             before = now
 
     async def _have(self, time: float) -> None:
-        """The window of a time, and the next one, are read."""
-        for number in (int(time / WINDOW), int(time / WINDOW) + 1):
-            if number not in self._windows and number * WINDOW <= self.end:
-                self._windows[number] = await asyncio.to_thread(self._read_window, number)
-            while len(self._windows) > WINDOWS_KEPT:
-                self._windows.popitem(last=False)
+        """The window of a time, and the next one, are read: one after the other, they have one file."""
+        async with self._reading:
+            for number in (int(time / WINDOW), int(time / WINDOW) + 1):
+                if number not in self._windows and number * WINDOW <= self.end:
+                    self._windows[number] = await asyncio.to_thread(self._read_window, number)
+                while len(self._windows) > WINDOWS_KEPT:
+                    self._windows.popitem(last=False)
 
     # what pages see
 
@@ -119,9 +128,9 @@ class RecordedFace(Face):
         """Of the last block that has ended by now."""
         blocks = {unit: block for unit in self.kinds if (block := self._block_at(unit)) is not None}
         states = unit_states(blocks)
-        for channel, path in self._loaded().items():
+        for channel, load in self.loads().items():
             if channel in states:
-                states[channel]["program"] = path
+                states[channel]["program"] = load.path
         return states
 
     def _block_at(self, unit: str) -> CycleBlock | None:
@@ -133,13 +142,9 @@ class RecordedFace(Face):
             found = block
         return found
 
-    def _loaded(self) -> dict[str, str]:
+    def loads(self) -> dict[str, Load]:
         cycle = self._time / self.cycle_time
-        return {channel: path for at, channel, path, _ in self._programs if at <= cycle}
-
-    def text_of(self, path: str) -> str | None:
-        """Of a program that was loaded; None where the recording does not have it."""
-        return next((text for _, _, name, text in reversed(self._programs) if name == path), None)
+        return {channel: load for at, channel, load in self._programs if at <= cycle}
 
     def news(self) -> News:
         begin, end = self._told / self.cycle_time, self._time / self.cycle_time
@@ -210,17 +215,18 @@ class RecordedFace(Face):
         rows = zip(*(columns[name].tolist() for name in names), strict=True)
         return [Event(*row) for row in rows]
 
-    def _read_programs(self) -> list[tuple[int, str, str, str | None]]:
-        """Cycle, channel, path and text of each program that was loaded."""
+    def _read_programs(self) -> list[tuple[int, str, Load]]:
+        """Cycle, channel, and each program that was loaded."""
         if "/commands" not in self._recording.topics:
             return []
         names = ("cycle", "target", "command", "accepted", "arguments_json")
         columns = self._recording.columns("/commands", *names)
         rows = zip(*(columns[name].tolist() for name in names), strict=True)
-        loads = [
-            (cycle, unit, json.loads(given)) for cycle, unit, command, ok, given in rows if command == "load" and ok
+        return [
+            (cycle, unit, load_of(json.loads(given)))
+            for cycle, unit, command, ok, given in rows
+            if command == "load" and ok
         ]
-        return [(cycle, unit, given["program"], given.get("text")) for cycle, unit, given in loads]
 
     def close(self) -> None:
         self._recording.close()

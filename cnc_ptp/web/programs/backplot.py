@@ -53,12 +53,16 @@ class Drawing:
     text: str
     file: str
     dialect: str | None = None
+    files: Mapping[str, str] | None = None
+    """Texts of the programs that it calls, by name; None: they are looked for."""
 
 
 def draw(drawing: Drawing, *, most: int = MOST_POINTS, seconds: float = LONGEST) -> bytes:
     """HEAD and points. Raises ProgramError for a program that is refused when it is loaded."""
     check, turning = program_check(drawing)
-    files = Search(check_folders(drawing), {}).called(drawing.text, folder_of(drawing.file))
+    files = drawing.files
+    if files is None:
+        files = Search(check_folders(drawing), {}).called(drawing.text, folder_of(drawing.file))
     program = check.parse(drawing.text, drawing.file, files, drawing.dialect)
     pen = Pen(check.axis_names, check.start, most)
     state = check.state({}, {}, {})

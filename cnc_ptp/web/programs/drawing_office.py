@@ -21,6 +21,8 @@ def try_to_draw(drawing: Drawing) -> bytes | str:
         return draw(drawing)
     except CncError as error:
         return error.full_message
+    except Exception as error:  # a mistake of ours is told as well
+        return repr(error)
 
 
 class DrawingOffice:
@@ -28,18 +30,18 @@ class DrawingOffice:
 
     def __init__(self) -> None:
         self._pool: ProcessPoolExecutor | None = None
-        self._drawn: dict[tuple[str, str, str], asyncio.Task[bytes]] = {}
+        self._drawn: dict[tuple[str, ...], asyncio.Task[bytes]] = {}
 
     async def draw(self, drawing: Drawing) -> bytes:
         """As backplot.draw. Raises CncError 26253 where that is not possible."""
-        key = (drawing.channel, drawing.file, drawing.text)
+        key = (drawing.channel, drawing.file, drawing.text, str(drawing.files))
         if key not in self._drawn:
             self._drawn[key] = asyncio.create_task(self._draw(drawing))
             while len(self._drawn) > KEPT:
                 del self._drawn[next(iter(self._drawn))]
         try:
             return await asyncio.shield(self._drawn[key])
-        except CncError:
+        except Exception:  # whatever has failed may be tried again
             self._drawn.pop(key, None)
             raise
 
@@ -63,7 +65,10 @@ class DrawingOffice:
 
     def prepare(self) -> None:
         """Its process starts now, so that the first drawing need not wait for that."""
-        self._started().submit(int)
+        try:
+            self._started().submit(int)
+        except BrokenProcessPool:
+            self._pool = None  # the next drawing starts another one
 
     def close(self) -> None:
         if self._pool is not None:

@@ -42,7 +42,8 @@ class ProgramRoutes:
     async def _text(self, request: web.Request) -> web.StreamResponse:
         """Always as plain text: what is in a program is never taken for a page."""
         self._access.login_of(request)
-        text = await asyncio.to_thread(self._hub.programs.text, request.match_info["name"])
+        name, channel = request.match_info["name"], request.query.get("channel", "")
+        text = await asyncio.to_thread(self._hub.programs.text, name, channel)
         return web.Response(text=text, content_type=PLAIN, charset="utf-8", headers={"Cache-Control": "no-store"})
 
     async def _upload(self, request: web.Request) -> web.StreamResponse:
@@ -71,8 +72,9 @@ class ProgramRoutes:
         channel = request.query.get("channel", "channel")
         if face.kinds.get(channel) != "channel":
             raise unknown_unit(channel, [unit for unit, kind in face.kinds.items() if kind == "channel"], "channel")
-        path, text = await asyncio.to_thread(self._hub.programs.loaded_text, channel)
-        drawing = Drawing(channel, face.kinds, face.sets, face.cycle_time, text, path)
+        load = await asyncio.to_thread(self._hub.programs.loaded_text, channel)
+        files = load.files if load.files or face.is_recording else None
+        drawing = Drawing(channel, face.kinds, face.sets, face.cycle_time, load.text or "", load.path, files=files)
         points = await self._hub.office.draw(drawing)
         headers = {"Cache-Control": "no-store"}
         response = web.Response(body=points, content_type="application/octet-stream", headers=headers)

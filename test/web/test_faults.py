@@ -1,0 +1,213 @@
+"""What goes wrong in one page, one process or one message stays there."""
+
+import asyncio
+import os
+import signal
+from concurrent.futures import Future
+from types import SimpleNamespace
+
+import pytest
+from web_support import PATIENCE, site
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.nodes.client.calls_in_flight import Call, CallsInFlight
+
+
+def run(story, **options):
+    async def told():
+        async with site(**options) as here:
+            await asyncio.wait_for(story(here), 60.0)
+
+    asyncio.run(told())
+
+
+class Slow:
+    """The machine answers commands when a test says so."""
+
+    def __init__(self, face, monkeypatch):
+        self.begun, self.may_end = [], asyncio.Event()
+        self._answer_to = face._answer_to
+        monkeypatch.setattr(face, "_answer_to", self.answer)
+
+    async def answer(self, unit, command, arguments, user):
+        self.begun.append(command)
+        if command == "move_absolute":
+            await self.may_end.wait()
+        return await self._answer_to(unit, command, arguments, user)
+
+
+async def until(condition):
+    async def wait():
+        while not condition():
+            await asyncio.sleep(0.01)
+
+    await asyncio.wait_for(wait(), PATIENCE)
+
+
+def test_a_page_closes_while_its_command_is_on_its_way(monkeypatch):
+    async def story(here):
+        slow = Slow(here.hub.face, monkeypatch)
+        other = await here.page(commands=False)
+        page = await here.page()
+        await page.send(type="command", id=9, unit="x", command="move_absolute", arguments={"target": 1})
+        await until(lambda: slow.begun)
+        await page.socket.close()
+        await until(lambda: len(here.hub.sessions) == 1)
+        slow.may_end.set()
+        text = "web: axis x: move_absolute, carried out"
+        assert await other.wait_for("event", lambda event: event["text"] == text)
+        assert here.hub.face is not None
+
+    run(story)
+
+
+def test_an_answer_that_nobody_waits_for():
+    """A cancelled future takes no result: the thread of the client would end."""
+    cancelled, done = Future(), SimpleNamespace(done=lambda: True, result=lambda: 1)
+    cancelled.cancel()
+    calls = CallsInFlight()
+    calls._calls = [Call("x", None, None, 0.0, 1.0, cancelled, done)]
+    calls.go_on()
+    assert calls._calls == []
+
+
+def test_a_stop_waits_for_no_command(monkeypatch):
+    async def story(here):
+        slow = Slow(here.hub.face, monkeypatch)
+        page = await here.page()
+        for number, target in ((11, 1), (12, 2)):
+            await page.send(
+                type="command", id=number, unit="x", command="move_absolute", arguments={"target": target}
+            )
+        await until(lambda: slow.begun)
+        assert (await page.command("x", "halt"))["ok"]
+        assert (await page.command("plc", "emergency_stop", enabled=True))["ok"]
+        slow.may_end.set()
+        dropped = await page.wait_for("answer", lambda answer: answer["id"] == 12)
+        text = "axis x: move_absolute: a stop came before it; it was not sent"
+        assert (dropped["number"], dropped["text"]) == (26261, text)
+        assert slow.begun == ["move_absolute", "halt", "emergency_stop"]
+
+    run(story)
+
+
+def test_a_feed_hold_drops_nothing(monkeypatch):
+    async def story(here):
+        slow = Slow(here.hub.face, monkeypatch)
+        page = await here.page()
+        for number in (11, 12):
+            await page.send(
+                type="command", id=number, unit="x", command="move_absolute", arguments={"target": number / 10}
+            )
+        await until(lambda: slow.begun)
+        assert (await page.command("x", "feed_hold", enabled=True))["ok"]
+        slow.may_end.set()
+        held = await page.wait_for("answer", lambda answer: answer["id"] == 12)
+        assert held["number"] == 23005, held  # of the axis: it came to it
+
+    run(story)
+
+
+def test_a_command_without_an_answer_is_noted(monkeypatch):
+    async def story(here):
+        async def no_answer(*arguments):
+            raise CncError(26136, "axis x: halt: no answer within 5 s", "see `cnc_ptp status`")
+
+        page = await here.page()
+        monkeypatch.setattr(here.hub.face, "_answer_to", no_answer)
+        answer = await page.command("x", "halt")
+        assert answer["number"] == 26136
+        text = "web: axis x: halt, no answer, P-ERR-26136"
+        assert await page.wait_for("event", lambda event: event["text"] == text)
+
+    run(story)
+
+
+def test_half_a_character(monkeypatch):
+    """JSON has them, UTF-8 has not."""
+
+    async def story(here):
+        page = await here.page()
+        await page.socket.send_str('{"type": "command", "id": "\\ud800", "unit": "\\ud801", "command": "\\ud802"}')
+        assert (await page.wait_for("answer"))["id"] == "\ud800"
+        await page.socket.send_str('{"type": "\\ud800"}')
+        assert (await page.wait_for("error"))["number"] == 26233
+        assert (await page.ask("ping"))["ok"]
+        socket = await here.client.ws_connect("/ws")
+        await socket.send_str('{"type": "hello", "token": "\\ud800"}')
+        assert (await socket.receive_json())["number"] == 26238
+
+    run(story)
+
+
+def test_a_mistake_of_ours_is_answered(capsys, monkeypatch):
+    async def story(here):
+        page = await here.page()
+        text = "the server has failed: ZeroDivisionError('division by zero'); whether it was carried out is not known"
+
+        async def fails(*arguments):
+            return 1 / 0
+
+        monkeypatch.setattr(here.hub.face, "_answer_to", fails)
+        answer = await page.command("x", "halt")
+        assert (answer["number"], answer["text"]) == (26260, text)
+        monkeypatch.setattr(here.hub.right, "give", lambda session: 1 / 0)
+        answer = await page.ask("give_command")
+        assert (answer["number"], answer["text"]) == (26260, text)
+
+    run(story)
+    assert "ZeroDivisionError" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("table", [5, "a", {}, [[1]]])
+def test_a_command_with_a_wrong_value_is_answered(table):
+    async def story(here):
+        page = await here.page()
+        answer = await page.command("y", "couple_cam", master="x", table=table)
+        assert not answer["ok"] and answer["number"]
+
+    run(story)
+
+
+def test_a_page_that_takes_nothing_is_cut_off(monkeypatch):
+    monkeypatch.setattr("cnc_ptp.web.session.MOST_OUTGOING", 50)
+
+    async def story(here):
+        await here.page(commands=False)
+        [session] = here.hub.sessions
+        for _ in range(1000):
+            session.send({"type": "event"})
+        assert len(session._outgoing) == 0
+        await until(lambda: not here.hub.sessions)
+
+    run(story)
+
+
+def test_the_process_that_draws_dies_again_and_again():
+    async def story(here):
+        page = await here.page()
+        for number in range(3):
+            assert (await page.ask("load", name="part.nc", text=f"G1 X1{number} F600\nM30\n"))["ok"]
+            await page.wait_for("program")
+            assert (await here.client.get("/api/backplot")).status == 200
+            [drawing] = here.hub.office._pool._processes
+            os.kill(drawing, signal.SIGKILL)
+            await asyncio.sleep(0.3)
+        assert here.hub.face is not None
+        assert (await page.ask("ping"))["ok"]
+
+    run(story)
+
+
+def test_a_drawing_that_has_failed_is_tried_again(monkeypatch):
+    async def story(here):
+        page = await here.page()
+        assert (await page.ask("load", name="part.nc", text="G1 X10 F600\nM30\n"))["ok"]
+        await page.wait_for("program")
+        right = here.hub.office._started
+        monkeypatch.setattr(here.hub.office, "_started", lambda: 1 / 0)
+        assert (await here.client.get("/api/backplot")).status == 500
+        monkeypatch.setattr(here.hub.office, "_started", right)
+        assert (await here.client.get("/api/backplot")).status == 200
+
+    run(story)
