@@ -215,7 +215,7 @@ class Fake:
             "turning": False,
             "limits": {"override": 200.0},
         }
-        spindle = {"name": "s", "kind": "spindle", "limits": {"speed": 12000.0, "gears": [1, 2]}}
+        spindle = {"name": "s", "kind": "spindle", "limits": {"speed": 12000.0, "gears": [1, 2], "override": 200.0}}
         units = [{"name": "plc", "kind": "plc"}, channel, spindle, *(axis(n) for n in "xyz")]
         signals = {n: [{"field": f, "unit": "mm"} for f in FIELDS] for n in "xyz"} | {
             "s": [{"field": "actual_speed_rpm", "unit": "rpm"}]
