@@ -317,7 +317,9 @@ def test_offsets_are_shown_set_and_taught(look, fake):
 
 def test_the_picker_takes_the_endings_of_the_server(look):
     page = look(command=True)
-    until(page, "document.querySelector('[aria-label=\\'Upload a program\\']').accept === '.nc,.ngc,.cnc,.tap,.mpf,.spf'")
+    until(
+        page, "document.querySelector('[aria-label=\\'Upload a program\\']').accept === '.nc,.ngc,.cnc,.tap,.mpf,.spf'"
+    )
 
 
 def commands(fake):
