@@ -30,6 +30,8 @@ PERIOD = 0.04
 """Seconds between two states: 25 a second, so that it is more than 20 on a busy computer too."""
 AGAIN = 1.0
 """Seconds until a machine that was not found is looked for again."""
+LOGINS_PERIOD = 0.5
+"""Seconds between two looks at whether the logins of pages have ended."""
 WAITING = CncError(NO_MACHINE_YET, "no machine runs", "the page is filled as soon as there is one")
 
 
@@ -59,36 +61,45 @@ class Hub:
         self._state: State = {}
         self.why_none = WAITING
         """Why there is no machine now."""
-        self._task: asyncio.Task[None] | None = None
+        self._tasks: list[asyncio.Task[None]] = []
 
     # its life
 
     def begin(self) -> None:
-        self._task = asyncio.create_task(self._live())
+        self._tasks = [asyncio.create_task(self._live()), asyncio.create_task(self._watch_logins())]
 
     async def end(self) -> None:
         """All sessions end; their jogs too."""
         for session in [*self.sessions]:
             await session.close()
-        if self._task is not None:
-            self._task.cancel()
+        for task in self._tasks:
+            task.cancel()
             with contextlib.suppress(asyncio.CancelledError):
-                await self._task
+                await task
         self.office.close()
         self.tasks.close()
         if self.face is not None:
             await asyncio.to_thread(self.face.close)
             self.face = None
 
+    async def _watch_logins(self) -> None:
+        while True:
+            await asyncio.sleep(LOGINS_PERIOD)
+            for session in [*self.sessions]:
+                session.end_without_login()
+
     async def _live(self) -> None:
         while True:
             try:
                 face = await asyncio.to_thread(self._connect)
+                await self._live_with(face)
             except CncError as error:
                 self.why_none = error
                 await asyncio.sleep(AGAIN)
-                continue
-            await self._live_with(face)
+            except Exception as error:  # a mistake of ours: pages are told, and it is tried again
+                traceback.print_exc()
+                self.face, self.why_none = None, server_failed(error)
+                await asyncio.sleep(AGAIN)
 
     async def _live_with(self, face: Face) -> None:
         self.face, self._state, self.alarms = face, {}, Alarms()
@@ -112,7 +123,7 @@ class Hub:
             await asyncio.to_thread(face.close)
         except Exception as error:  # a mistake of ours must not leave pages that show the past
             traceback.print_exc()
-            self._tell_gone(CncError(GONE, f"the server has failed: {error!r}", "the machine continues"))
+            self._tell_gone(server_failed(error))
             await asyncio.to_thread(face.close)
         finally:
             running.cancel()
@@ -159,7 +170,6 @@ class Hub:
         self._state = state
         self._tell_programs(face, changes)
         for session in [*self.sessions]:
-            session.end_without_login()
             session.send_state(face.time, state, changes)
             session.take_blocks(news.blocks)
 
@@ -228,6 +238,10 @@ class Hub:
             number = GONE if self.why_none.number == GONE else NO_MACHINE_YET
             raise CncError(number, self.why_none.reason, "nothing was sent")
         return self.face
+
+
+def server_failed(error: Exception) -> CncError:
+    return CncError(GONE, f"the server has failed: {error!r}", "the machine continues")
 
 
 def request_fields(request: HandshakeRequest) -> dict[str, Any]:

@@ -10,12 +10,17 @@ from cnc_ptp.client.faults import unknown_unit
 from cnc_ptp.errors import CncError
 from cnc_ptp.nodes.bridge.jog_topics import PATIENCE
 from cnc_ptp.web.access.rights import require_role
-from cnc_ptp.web.numbers import JOG_ENDED
+from cnc_ptp.web.numbers import JOG_ENDED, ROUND_TRIP
 from cnc_ptp.web.page import Page
 from cnc_ptp.web.protocol import Message, error_fields, field
 
 LATE = 0.15
-"""Seconds that a message may be late, measured against the quickest one of its page."""
+"""Seconds that a message may be late, measured against the quickest one of its page …"""
+DRIFT = 1e-3
+"""… which counts less with time, by more than clocks differ: s per s."""
+LONGEST_ROUND_TRIP = 0.15
+"""Seconds to the server and back, as the page measures it with `ping`."""
+STANDS = "the axis stops; press the key again"
 
 
 @dataclass(slots=True)
@@ -38,11 +43,14 @@ class Jogs:
         self._now = now
         self._held: dict[str, Press] = {}
         self._quickest = float("inf")
+        self._quickest_at = 0.0
+        self._round_trip = 0.0
 
     def take(self, message: Message) -> None:
         """`jog`: axis, velocity (mm/s, deg/s), sequence, time (ms, of the page's clock).
 
-        Raises CncError 26111, 26233, 26235, 26236; one message says that a jog has ended (26243).
+        Raises CncError 26111, 26233, 26235, 26236; one message says that a jog has ended, or does not begin (26243,
+        26259).
         """
         axis, velocity = self._axis(message), field(message, "velocity", "number")
         sequence, sent = field(message, "sequence", "integer"), field(message, "time", "number")
@@ -50,19 +58,43 @@ class Jogs:
             self._stop(axis)
             return
         self._require_right(axis)
-        is_late = self._lateness(sent * 1e-3) > LATE
-        press = self._held.get(axis)
-        if sequence == 1 and not is_late:
-            self._held[axis] = Press(1, self._now())
-            self._note(axis, f"jog with {velocity:g} begins")
-        elif press is None:
+        late = self._lateness(sent * 1e-3)
+        if sequence != 1 and axis not in self._held:
+            return  # of a jog that has ended
+        reason = self._objection(axis, sequence, late)
+        if reason is not None:
+            self._break_off(axis, reason)
             return
-        elif is_late or sequence <= press.sequence or self._now() - press.heard > PATIENCE:
-            self._break_off(axis)
-            return
-        else:
-            press.sequence, press.heard = sequence, self._now()
         self._session.hub.require_face().jog(axis, velocity, user=self._session.user)
+        self._hold(axis, velocity, sequence)
+
+    def _objection(self, axis: str, sequence: int, late: float) -> CncError | None:
+        """Why a message does not count; `late` in s."""
+        press = self._held.get(axis)
+        if self._round_trip > LONGEST_ROUND_TRIP:
+            text = f"axis {axis}: {self._round_trip * 1e3:.0f} ms to the server and back"
+            return CncError(ROUND_TRIP, f"{text}, a jog takes at most {LONGEST_ROUND_TRIP * 1e3:.0f} ms", STANDS)
+        if sequence == 1:
+            text = f"axis {axis}: the jog came {late:.2f} s late"
+            return CncError(JOG_ENDED, text, STANDS) if late > LATE else None
+        assert press is not None
+        if late > LATE or sequence <= press.sequence or self._now() - press.heard > PATIENCE:
+            return CncError(JOG_ENDED, f"axis {axis}: the messages of the jog came too late", STANDS)
+        return None
+
+    def _hold(self, axis: str, velocity: float, sequence: int) -> None:
+        self._held[axis] = Press(sequence, self._now())
+        if sequence == 1:
+            self._note(axis, f"jog with {velocity:g} begins")
+
+    def take_ping(self, message: Message) -> float:
+        """`ping`: time (ms, of the page's clock), round_trip (ms) of the one before. Raises CncError 26233."""
+        sent: float = field(message, "time", "number")
+        round_trip = field(message, "round_trip", "number", None)
+        self._lateness(sent * 1e-3)
+        if round_trip is not None:
+            self._round_trip = round_trip * 1e-3
+        return sent
 
     def take_stop(self, message: Message) -> None:
         """`jog_stop`: of an axis."""
@@ -87,14 +119,14 @@ class Jogs:
 
     def _lateness(self, sent: float) -> float:
         """Seconds; `sent` by the page's clock, whose difference to ours is at most that of its quickest message."""
-        difference = self._now() - sent
-        self._quickest = min(self._quickest, difference)
-        return difference - self._quickest
+        now = self._now()
+        self._quickest += DRIFT * (now - self._quickest_at)
+        self._quickest_at = now
+        self._quickest = min(self._quickest, now - sent)
+        return now - sent - self._quickest
 
-    def _break_off(self, axis: str) -> None:
+    def _break_off(self, axis: str, error: CncError) -> None:
         self._stop(axis)
-        effect = "the axis stops; press the key again"
-        error = CncError(JOG_ENDED, f"axis {axis}: the messages of the jog came too late", effect)
         self._session.send({"type": "jog_ended", "axis": axis, **error_fields(error)})
 
     def _stop(self, axis: str) -> None:

@@ -175,5 +175,8 @@ class PageMessages:
         self._hub.to_all({"type": "acknowledged", "alarms": numbers, "user": self._session.user})
 
     def _ping(self, message: Message) -> None:
-        """For the page, to know how late the server's messages are."""
-        self._session.send(answer(message))
+        """For the page, to know how far the server is, and for the server, to know how late jogs come."""
+        if message.get("time") is not None:
+            self._session.send({"type": "pong", "time": self._jogs.take_ping(message)})
+        if message.get("id") is not None:
+            self._session.send(answer(message))

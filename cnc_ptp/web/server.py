@@ -8,7 +8,7 @@ from typing import Any
 from aiohttp import WSCloseCode, WSMsgType, web
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.web.access.access import COOKIE, Access
+from cnc_ptp.web.access.access import Access, cookie_name
 from cnc_ptp.web.access.guard import Names, make_guard
 from cnc_ptp.web.access.logins import Login
 from cnc_ptp.web.data_routes import DataRoutes
@@ -54,20 +54,27 @@ class Server:
 
     async def _index(self, request: web.Request) -> web.StreamResponse:
         response = self._static.response(request, "index.html")
-        self.access.welcome(request, response)
+        key = self.access.welcome(request)
+        if key is not None:
+            self.access.remember(request, response, key)
         return response
 
     async def _session(self, request: web.Request) -> web.StreamResponse:
         """Who the page is, and its token; 401 where a login is needed."""
-        login = self.access.login_of(request)
+        key = self.access.welcome(request)  # of a server that has begun again, or a browser without its cookie
+        login = self.access.login_of(request) if key is None else self.access.logins.find(key)
+        assert login is not None
         fields = {"user": login.user, "role": login.role, "token": login.token, "login": self.access.needs_login}
-        return web.json_response(fields, headers={"Cache-Control": "no-store"})
+        response = web.json_response(fields, headers={"Cache-Control": "no-store"})
+        if key is not None:
+            self.access.remember(request, response, key)
+        return response
 
     async def _log_in(self, request: web.Request) -> web.StreamResponse:
         """{"user": …, "password": …}"""
         message = {"type": "login", **read_body(await request.text())}
         user, password = field(message, "user", "text"), field(message, "password", "text")
-        key = await self.access.log_in(user, password)
+        key = await self.access.log_in(user, password, request.remote or "")
         response = web.json_response({"user": user})
         self.access.remember(request, response, key)
         return response
@@ -76,7 +83,7 @@ class Server:
         self.access.require_page(request)
         self.access.log_out(request)
         response = web.json_response({})
-        response.del_cookie(COOKIE)
+        response.del_cookie(cookie_name(request))
         return response
 
     async def _socket(self, request: web.Request) -> web.StreamResponse:

@@ -49,7 +49,7 @@ class Session:
         self._is_ending = self._is_cut_off = False
         self._socket = socket
         self._outgoing: deque[str | bytes] = deque()
-        self._something = asyncio.Event()
+        self._something, self._is_sent = asyncio.Event(), asyncio.Event()
         self._rate = Rate(MOST_PER_SECOND, BURST)
         self._messages = PageMessages(self)
 
@@ -76,6 +76,7 @@ class Session:
             self.hub.keep(asyncio.create_task(self.abort()))
             return
         self._outgoing.append(data)
+        self._is_sent.clear()
         self._something.set()
 
     @property
@@ -145,7 +146,8 @@ class Session:
             self.hub.keep(asyncio.create_task(self._say_goodbye()))
 
     async def _say_goodbye(self) -> None:
-        await asyncio.sleep(0)  # the error is sent first
+        with suppress(asyncio.TimeoutError):
+            await asyncio.wait_for(self._is_sent.wait(), 1.0)  # the error first
         await self.close(WSCloseCode.POLICY_VIOLATION)
 
     def _take(self, text: str) -> None:
@@ -189,6 +191,7 @@ class Session:
                 except Exception:  # the socket, or what was to be sent
                     await self.abort()
                     return
+            self._is_sent.set()
 
     # the end
 

@@ -7,10 +7,12 @@ from concurrent.futures import Future
 from types import SimpleNamespace
 
 import pytest
-from web_support import PATIENCE, site
+from web_support import MILL, PATIENCE, site
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.nodes.client.calls_in_flight import Call, CallsInFlight
+from cnc_ptp.web.access.guard import Names
+from cnc_ptp.web.faces.machine_face import offline_face
 
 
 def run(story, **options):
@@ -211,3 +213,30 @@ def test_a_drawing_that_has_failed_is_tried_again(monkeypatch):
         assert (await here.client.get("/api/backplot")).status == 200
 
     run(story)
+
+
+def test_a_machine_that_cannot_be_shown_is_tried_again(monkeypatch, capsys):
+    times = []
+
+    def connect():
+        times.append(1)
+        if len(times) < 2:
+            raise ValueError("a mistake")
+        return offline_face(MILL)
+
+    monkeypatch.setattr("cnc_ptp.web.hub.AGAIN", 0.3)
+
+    async def story(here):
+        page = await here.page(commands=False)
+        text = "the server has failed: ValueError('a mistake'); the machine continues"
+        assert (page.hello["why"]["number"], page.hello["why"]["text"]) in ((26171, text), (26244, text))
+        assert await page.wait_for("back")
+
+    run(story, connect=connect, waits=False)
+    assert "a mistake" in capsys.readouterr().err
+
+
+def test_a_name_in_capitals_is_the_same_name():
+    names = Names(("Mill.Example",))
+    names.require_host(SimpleNamespace(headers={"Host": "mill.example:8080"}))
+    names.require_host(SimpleNamespace(headers={"Host": "MILL.example:8080"}))

@@ -110,6 +110,7 @@ class Heard:
         )  # fmt: skip
         right = SimpleNamespace(require=lambda session, what: None)
         hub = SimpleNamespace(face=face, require_face=lambda: face, right=right)
+        self.face = face
         self.session = SimpleNamespace(hub=hub, user="anna", role="operator", send=self.told.append)
         self.under_test = Jogs(self.session, now=lambda: self.now)
 
@@ -140,6 +141,57 @@ def test_a_press_of_the_past_is_none():
     heard.now += 2.0
     heard.message(1, sent=1.0)  # a second late
     assert heard.jogs == [5.0, 0.0]
+    text = "axis x: the jog came 1.00 s late; the axis stops; press the key again"
+    assert [(message["type"], message["number"], message["text"]) for message in heard.told] == [
+        ("jog_ended", 26243, text)
+    ]
+
+
+def test_clocks_that_drift_apart():
+    """50 ppm: 0.36 s in two hours."""
+    heard = Heard()
+    for _ in range(12):
+        heard.message(1, sent=(heard.now - 100.0) * (1.0 - 50e-6))
+        heard.under_test.take_stop({"type": "jog_stop", "axis": "x"})
+        heard.now += 600.0
+    assert heard.jogs == [5.0, 0.0] * 12 and heard.told == []
+
+
+def test_a_page_that_is_far_away():
+    heard = Heard()
+    heard.message(1, sent=0.0)
+    assert heard.under_test.take_ping({"type": "ping", "time": 0.0, "round_trip": 151.0}) == 0.0
+    heard.message(2, sent=0.0)
+    heard.message(3, sent=0.0)
+    heard.message(1, sent=0.0)
+    assert heard.jogs == [5.0, 0.0]
+    text = "axis x: 151 ms to the server and back, a jog takes at most 150 ms; the axis stops; press the key again"
+    assert [(message["number"], message["text"]) for message in heard.told] == [(26259, text)] * 2
+    heard.under_test.take_ping({"type": "ping", "time": 0.0, "round_trip": 20.0})
+    heard.message(1, sent=0.0)
+    assert heard.jogs == [5.0, 0.0, 5.0]
+
+
+def test_a_ping_comes_back():
+    async def story():
+        async with site() as here:
+            page = await here.page(commands=False)
+            await page.send(type="ping", time=12.5)
+            assert await page.wait_for("pong") == {"type": "pong", "time": 12.5}
+            await page.send(type="ping", time="now")
+            text = "ping: time = 'now' is not a number; nothing was done"
+            assert (await page.wait_for("error"))["text"] == text
+
+    asyncio.run(story())
+
+
+def test_a_jog_that_the_machine_refuses_is_not_held():
+    """Of a recording: there would be nothing to stop when the page ends."""
+    heard = Heard()
+    heard.face.jog = lambda axis, velocity, user: 1 / 0
+    with pytest.raises(ZeroDivisionError):
+        heard.message(1, sent=0.0)
+    heard.under_test.end()
 
 
 def test_each_message_is_passed_on_once():

@@ -14,6 +14,7 @@ from web_support import Page, site
 
 from cnc_ptp.cli import main
 from cnc_ptp.errors import CncError
+from cnc_ptp.web.access.access import Access
 from cnc_ptp.web.access.logins import IDLE_TIME, LONGEST_TIME, Logins
 from cnc_ptp.web.access.security import tls_context
 from cnc_ptp.web.access.users import Users, add_token, add_user, read_users, remove
@@ -130,6 +131,89 @@ def test_a_user_who_is_removed(users):
         assert (await page.wait_for("error"))["number"] == 26239
 
     run(story, users=users)
+
+
+@pytest.mark.parametrize(("role", "password"), [("viewer", PASSWORD), ("operator", "another password")])
+def test_a_user_with_another_role_or_password(users, role, password):
+    async def story(here):
+        page = await page_of(here, "otto")
+        add_user(users, "otto", role, password)
+        assert (await page.wait_for("error"))["number"] == 26239
+        assert (await here.client.get("/api/session")).status == 401
+
+    run(story, users=users)
+
+
+@pytest.mark.parametrize("change", [lambda file: remove(file, "cell"), lambda file: add_token(file, "cell", "viewer")])
+def test_a_token_that_is_taken_back_ends_its_socket(users, change):
+    token = add_token(users, "cell", "operator")
+
+    async def story(here):
+        page = Page(await here.client.ws_connect("/ws", headers={"Authorization": f"Bearer {token}"}))
+        await page.send(type="hello", token=token)
+        await page.wait_for("hello")
+        change(users)
+        assert (await page.wait_for("error"))["number"] == 26239
+
+    run(story, users=users)
+
+
+def test_a_login_ends_while_there_is_no_machine(users):
+    def none():
+        raise CncError(26108, "no machine", "none")
+
+    async def story(here):
+        page = await page_of(here, "otto")
+        remove(users, "otto")
+        assert (await page.wait_for("error"))["number"] == 26239
+
+    run(story, users=users, connect=none, waits=False)
+
+
+def test_wrong_passwords_do_not_lock_others_out(users, monkeypatch):
+    monkeypatch.setattr("cnc_ptp.web.access.access.LOGINS_PER_SECOND", 1e-3)
+
+    async def story():
+        access = Access(Users(str(users)))
+        for _ in range(5):
+            with pytest.raises(CncError, match="name or password is wrong"):
+                await access.log_in("otto", "wrong password", "192.0.2.1")
+        with pytest.raises(CncError, match="too many attempts"):
+            await access.log_in("otto", PASSWORD, "192.0.2.1")
+        assert await access.log_in("otto", PASSWORD, "192.0.2.2")
+
+    asyncio.run(story())
+
+
+def test_a_password_of_half_characters(users):
+    async def story(here):
+        content = '{"user": "otto", "password": "\\ud800"}'
+        answer = await here.client.post("/api/login", data=content)
+        assert answer.status == 401
+
+    run(story, users=users)
+
+
+def test_without_users_a_page_is_logged_in_again():
+    """The server has begun again, or its cookie was lost: the page asks for its session, and goes on."""
+
+    async def story(here):
+        here.client.session.cookie_jar.clear()
+        assert (await here.client.get("/api/programs")).status == 401
+        answer = await here.client.get("/api/session")
+        assert (answer.status, (await answer.json())["role"]) == (200, "commissioner")
+        assert f"cnc_ptp_{here.client.port}=" in answer.headers["Set-Cookie"]
+        assert (await here.client.get("/api/programs")).status == 200
+
+    run(story)
+
+
+def test_without_users_a_login_has_no_end():
+    logins = Access().logins
+    logins._now = lambda: 1e9
+    key = logins.begin("web", "commissioner")
+    logins._now = lambda: 2e9
+    assert logins.find(key)
 
 
 def test_a_token_of_a_machine(users):

@@ -53,7 +53,7 @@ class Names:
     def require_host(self, request: web.Request) -> None:
         """Raises CncError 26237: another name may have been bent to this computer (DNS rebinding)."""
         host = host_name(request.headers.get(hdrs.HOST, ""))
-        if host not in self.names:
+        if host not in [name.lower() for name in self.names]:
             raise CncError(WRONG_ORIGIN, f"host '{host[:60]}' is none of {', '.join(self.names)}", NOTHING)
 
     @staticmethod

@@ -26,6 +26,8 @@ class Login:
     token: str = field(default_factory=lambda: secrets.token_urlsafe(24))
     """Against forged requests: pages of other origins cannot read it."""
     has_logged_out: bool = False
+    hash: str = ""
+    """Of its password or token: with another one, the login ends."""
     is_machine: bool = False
     """By a token that it sends with each request, it is no browser."""
 
@@ -33,16 +35,22 @@ class Login:
 class Logins:
     """By the value of their cookie, which nobody can guess."""
 
-    def __init__(self, *, idle_time: float = IDLE_TIME, now: Callable[[], float] = time.monotonic) -> None:
-        """`idle_time` in s."""
-        self._idle_time = idle_time
+    def __init__(
+        self,
+        *,
+        idle_time: float = IDLE_TIME,
+        longest_time: float = LONGEST_TIME,
+        now: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """Times in s."""
+        self._idle_time, self._longest_time = idle_time, longest_time
         self._now = now
         self._logins: dict[str, Login] = {}
 
-    def begin(self, user: str, role: str) -> str:
+    def begin(self, user: str, role: str, hash: str = "") -> str:
         """A new login: the value of its cookie."""
         key = secrets.token_urlsafe(32)
-        self._logins[key] = Login(user, role, self._now(), self._now())
+        self._logins[key] = Login(user, role, self._now(), self._now(), hash=hash)
         while len(self._logins) > MOST:
             del self._logins[next(iter(self._logins))]
         return key
@@ -61,11 +69,11 @@ class Logins:
     def has_ended(self, login: Login) -> bool:
         if login.has_logged_out:
             return True
-        return self._now() - login.used >= self._idle_time or self._now() - login.begin >= LONGEST_TIME
+        return self._now() - login.used >= self._idle_time or self._now() - login.begin >= self._longest_time
 
-    def of_machine(self, user: str, role: str) -> Login:
+    def of_machine(self, user: str, role: str, hash: str) -> Login:
         """One that is not remembered."""
-        return Login(user, role, self._now(), self._now(), is_machine=True)
+        return Login(user, role, self._now(), self._now(), hash=hash, is_machine=True)
 
     def use(self, login: Login) -> None:
         """Its user has done something."""

@@ -64,11 +64,10 @@ class Users:
             self._users, self._tokens = {}, {}  # nobody, rather than former users
             self._read_at = -1.0
 
-    def role_of(self, name: str) -> str | None:
-        """None for one who is no user any longer."""
+    def find(self, name: str, *, is_machine: bool = False) -> User | None:
+        """A user, or a machine with its token; None for one who is none any longer."""
         self._read_if_changed()
-        user = self._users.get(name)
-        return None if user is None else user.role
+        return (self._tokens if is_machine else self._users).get(name)
 
     def check(self, name: str, password: str) -> User | None:
         """The user with this password; takes as long for a name that there is not."""
