@@ -1,6 +1,6 @@
 // How long a message to the server and its answer take: measured every second, since a jog ends as late as its messages come.
 
-const [PERIOD, KEPT] = [1000, 3]; // ms between two pings; the last times that count
+const [PERIOD, FIRST_PERIOD, KEPT] = [1000, 200, 3]; // ms between two pings, and the first ones; the last times that count
 /** ms; a jog is refused above it, by the server too. */
 export const LONGEST_FOR_JOGS = 150;
 
@@ -23,12 +23,11 @@ export class RoundTrip {
 
   _begin() {
     this._end();
-    this._timer = setInterval(() => this._ping(), PERIOD);
     this._ping();
   }
 
   _end() {
-    clearInterval(this._timer);
+    clearTimeout(this._timer);
     [this._last, this._sent] = [[], 0];
     this._store.tell("round_trip", this.time);
   }
@@ -38,6 +37,7 @@ export class RoundTrip {
     this._sent ||= performance.now();
     const known = this._last.length ? { round_trip: this.time } : {};
     this._connection.send({ type: "ping", time: performance.now(), ...known });
+    this._timer = setTimeout(() => this._ping(), this._last.length < KEPT ? FIRST_PERIOD : PERIOD);
   }
 
   _heard({ time }) {
