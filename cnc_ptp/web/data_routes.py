@@ -15,13 +15,18 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import ParameterSet, ros_descriptors
 from cnc_ptp.parameters.declare.declarations import catalogue
 from cnc_ptp.web.access.access import Access
+from cnc_ptp.web.access.guard import HEADERS
+from cnc_ptp.web.access.rights import require_role
 from cnc_ptp.web.commissioning.spindle_curve import spindle_curve
 from cnc_ptp.web.faces.recorded_face import RecordedFace
 from cnc_ptp.web.faces.scope import read_signals
 from cnc_ptp.web.hub import Hub
-from cnc_ptp.web.numbers import A_RECORDING, BAD_MESSAGE
+from cnc_ptp.web.numbers import A_RECORDING, BAD_MESSAGE, TOO_MANY_MESSAGES
 from cnc_ptp.web.protocol import NOTHING, frame
+from cnc_ptp.web.rate import Rate
 
+PIECE = 1 << 18
+"""Bytes of a file that are sent together."""
 NOT_STORED = {"Cache-Control": "no-store"}
 
 
@@ -30,6 +35,8 @@ class DataRoutes:
 
     def __init__(self, hub: Hub, access: Access) -> None:
         self._hub, self._access = hub, access
+        self._snapshot_runs = asyncio.Lock()
+        self._rate = Rate(10.0, 50.0)
 
     def add_to(self, app: web.Application) -> None:
         app.router.add_get("/api/parameters", self._parameters)
@@ -43,11 +50,17 @@ class DataRoutes:
         face, unit = self._hub.require_face(), request.query.get("unit", "")
         if unit not in face.sets:
             raise unknown_unit(unit, face.sets)
+        self._require_rate()
         listed = await asyncio.to_thread(lambda: [*described(face.sets[unit])])
         text = frame({"unit": unit, "parameters": listed})
         response = web.Response(text=text, content_type="application/json", headers=NOT_STORED)
         response.enable_compression()
         return response
+
+    def _require_rate(self) -> None:
+        """Raises CncError 26234."""
+        if not self._rate.permits():
+            raise CncError(TOO_MANY_MESSAGES, "too many requests in a short time", "nothing was read; wait")
 
     async def _curve(self, request: web.Request) -> web.StreamResponse:
         """`?spindle=s`: acceleration over speed of each gear."""
@@ -64,6 +77,7 @@ class DataRoutes:
         face, query = self._hub.require_face(), request.query
         if not isinstance(face, RecordedFace):
             raise CncError(A_RECORDING, "recorded samples: this machine runs", f"{NOTHING}; use the scope")
+        self._require_rate()
         signals = read_signals(query.get("signals", "").split(","), face.kinds)
         begin, end = number(query.get("from", "0")), number(query.get("to", str(face.end)))
         points = int(number(query.get("points", "10000")))
@@ -72,14 +86,28 @@ class DataRoutes:
 
     async def _snapshot(self, request: web.Request) -> web.StreamResponse:
         """`?seconds=N`: the last seconds of the machine as a recording, where it has a recorder."""
-        self._access.login_of(request)
+        login = self._access.login_of(request)
+        require_role("snapshot", login.user, login.role, "operator")
         seconds = number(request.query.get("seconds", "0"))
-        with tempfile.TemporaryDirectory(prefix="cnc_ptp-") as folder:
-            file = Path(folder) / "snapshot.mcap"
-            await self._hub.require_face().snapshot(str(file), seconds)
-            content = await asyncio.to_thread(file.read_bytes)
-        headers = {**NOT_STORED, "Content-Disposition": 'attachment; filename="snapshot.mcap"'}
-        return web.Response(body=content, content_type="application/octet-stream", headers=headers)
+        if self._snapshot_runs.locked():
+            raise CncError(TOO_MANY_MESSAGES, "snapshot: another one is on its way", f"{NOTHING}; wait for it")
+        async with self._snapshot_runs:
+            with tempfile.TemporaryDirectory(prefix="cnc_ptp-") as folder:
+                file = Path(folder) / "snapshot.mcap"
+                await self._hub.require_face().snapshot(str(file), seconds)
+                return await sent(request, file)
+
+
+async def sent(request: web.Request, file: Path) -> web.StreamResponse:
+    """Piece by piece: it may be larger than the memory."""
+    headers = {**HEADERS, **NOT_STORED, "Content-Disposition": f'attachment; filename="{file.name}"'}
+    response = web.StreamResponse(headers=headers)
+    response.content_type, response.content_length = "application/octet-stream", file.stat().st_size
+    await response.prepare(request)
+    with file.open("rb") as stream:
+        while piece := await asyncio.to_thread(stream.read, PIECE):
+            await response.write(piece)
+    return response
 
 
 def number(text: str) -> float:

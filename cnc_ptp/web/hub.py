@@ -6,13 +6,13 @@ import asyncio
 import contextlib
 import json
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, fields
 from typing import Any
 
 from cnc_ptp.client.faults import GONE
 from cnc_ptp.errors import CncError
-from cnc_ptp.protocol.blocks import ChannelBlock, CommandRecord, Event, HandshakeRequest
+from cnc_ptp.protocol.blocks import ChannelBlock, CommandRecord, CycleBlock, Event, HandshakeRequest
 from cnc_ptp.web.access.command_right import CommandRight
 from cnc_ptp.web.commissioning.tasks import Tasks
 from cnc_ptp.web.faces.alarms import Alarms, event_fields
@@ -20,6 +20,7 @@ from cnc_ptp.web.faces.face import Face, State
 from cnc_ptp.web.faces.offset_table import OffsetTable
 from cnc_ptp.web.faces.program_watch import ProgramWatch
 from cnc_ptp.web.faces.switches import Switches
+from cnc_ptp.web.faces.targets import Targets
 from cnc_ptp.web.numbers import NO_MACHINE_YET
 from cnc_ptp.web.programs.drawing_office import DrawingOffice
 from cnc_ptp.web.programs.programs import ProgramFolder
@@ -56,6 +57,7 @@ class Hub:
         self.handshakes: dict[int, dict[str, Any]] = {}
         self.tables: dict[str, OffsetTable] = {}
         self._switches = Switches()
+        self.targets = Targets([])
         self.offsets: dict[str, dict[str, Any]] = {}
         """Channel -> what lies between programmed and machine positions."""
         self._state: State = {}
@@ -107,6 +109,7 @@ class Hub:
         self.programs.forget(is_recording=face.is_recording)
         self.offsets.clear()
         self._switches = Switches()
+        self.targets = Targets([unit for unit, kind in face.kinds.items() if kind == "axis"])
         channels = [unit for unit, kind in face.kinds.items() if kind == "channel"]
         self.tables = {unit: OffsetTable(face.sets[unit], face.sets) for unit in channels}
         for session in self.sessions:
@@ -159,13 +162,17 @@ class Hub:
         for request in news.requests:
             self._tell_request(request)
         for record in news.records:
-            self._tell_answered(record)
+            self._tell_answered(record, news.blocks)
         for unit, block in news.blocks:
             if isinstance(block, ChannelBlock):
                 self._tell_offsets(unit, block)
+                self._drop_handshakes(unit, block)
         if news.diagnostics:
             self.to_all({"type": "diagnostics", "nodes": [*news.diagnostics]})
-        state = {unit: {**fields, **self._switches.fields.get(unit, {})} for unit, fields in face.state().items()}
+        state = {
+            unit: {**fields, **self._switches.fields.get(unit, {}), **self.targets.fields(unit)}
+            for unit, fields in face.state().items()
+        }
         changes = difference(state, self._state)
         self._state = state
         self._tell_programs(face, changes)
@@ -191,16 +198,26 @@ class Hub:
             self.handshakes[request.id] = request_fields(request)
             self.to_all({"type": "handshake", **request_fields(request)})
 
-    def _tell_answered(self, record: CommandRecord) -> None:
+    def _tell_answered(self, record: CommandRecord, blocks: Sequence[tuple[str, CycleBlock]]) -> None:
         """A request that was acknowledged, an offset that was changed, by whomever."""
         self._switches.take_record(record)
+        self.targets.take_record(record, blocks, self._state)
         self.programs.take_record(record)
         if record.target in self.tables:
             self.tables[record.target].take_record(record)
         if record.command == "acknowledge" and record.accepted:
-            number = json.loads(record.arguments_json).get("id")
-            if self.handshakes.pop(number, None) is not None:
-                self.to_all({"type": "handshake_done", "id": number})
+            self._end_handshake(json.loads(record.arguments_json).get("id"))
+
+    def _end_handshake(self, number: int) -> None:
+        if self.handshakes.pop(number, None) is not None:
+            self.to_all({"type": "handshake_done", "id": number})
+
+    def _drop_handshakes(self, channel: str, block: ChannelBlock) -> None:
+        """Those of a program that has ended, or was reset: nobody waits for them."""
+        if block.done:
+            for number, request in [*self.handshakes.items()]:
+                if request["channel"] == channel and request["cycle"] < block.first_cycle:
+                    self._end_handshake(number)
 
     def _tell_offsets(self, channel: str, block: ChannelBlock) -> None:
         for offsets in block.offsets:
@@ -211,6 +228,11 @@ class Hub:
     def to_all(self, message: Mapping[str, Any]) -> None:
         for session in self.sessions:
             session.send(message)
+
+    def note(self, text: str) -> None:
+        """For the recording: who has done what besides commands."""
+        if self.face is not None:
+            self.face.note(round(self.face.time / self.face.cycle_time), text)
 
     def tell_operator(self) -> None:
         self.to_all({"type": "operator", **self.right.shown()})

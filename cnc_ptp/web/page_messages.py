@@ -148,8 +148,10 @@ class PageMessages:
     # the command right
 
     def _take_command(self, message: Message) -> None:
-        require_role("take_command", self._session.user, self._session.role, "operator")
-        self._hub.right.take(self._session)
+        force = field(message, "force", "switch", False)
+        needed = "commissioner" if force else "operator"
+        require_role("take_command", self._session.user, self._session.role, needed)
+        self._hub.right.take(self._session, force=force)
         self._told(message)
 
     def _ask_command(self, message: Message) -> None:
@@ -165,6 +167,7 @@ class PageMessages:
     def _told(self, message: Message) -> None:
         self._session.send(answer(message))
         self._hub.tell_operator()
+        self._hub.note(f"{self._session.label}: {message['type']}")
 
     # alarms
 
@@ -172,6 +175,9 @@ class PageMessages:
         require_role("acknowledge", self._session.user, self._session.role, "operator")
         numbers = self._hub.alarms.acknowledge(field(message, "alarm", "integer", None), self._session.user)
         self._session.send(answer(message))
+        if numbers:
+            shown = ", ".join(map(str, numbers[:10])) + (" …" if len(numbers) > 10 else "")
+            self._hub.note(f"{self._session.user}: alarms {shown} acknowledged")
         self._hub.to_all({"type": "acknowledged", "alarms": numbers, "user": self._session.user})
 
     def _ping(self, message: Message) -> None:

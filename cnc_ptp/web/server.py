@@ -20,6 +20,8 @@ from cnc_ptp.web.session import Session
 from cnc_ptp.web.static_files import StaticFiles
 
 MOST_SESSIONS = 50
+MOST_OF_USER = 20
+"""Pages of one user, so that nobody takes the places of all."""
 FIRST_MESSAGE = 5.0
 """Seconds within which a page says who it is."""
 SILENCE = 20.0
@@ -88,8 +90,14 @@ class Server:
 
     async def _socket(self, request: web.Request) -> web.StreamResponse:
         login = self.access.login_of(request)
+        of_user = sum(session.user == login.user for session in self.hub.sessions)
+        if of_user >= MOST_OF_USER and self.access.needs_login:
+            reason = f"the limit of open pages of {login.user} is reached, {MOST_OF_USER}"
+            raise CncError(TOO_MANY_SESSIONS, reason, f"{NOTHING}; close one")
         if len(self.hub.sessions) >= MOST_SESSIONS:
-            raise CncError(TOO_MANY_SESSIONS, f"{MOST_SESSIONS} pages are open", f"{NOTHING}; close one")
+            raise CncError(
+                TOO_MANY_SESSIONS, f"the limit of open pages is reached, {MOST_SESSIONS}", f"{NOTHING}; close one"
+            )
         socket = web.WebSocketResponse(max_msg_size=LARGEST_MESSAGE, heartbeat=SILENCE, autoping=True)
         await socket.prepare(request)
         if await self._is_own_page(socket, login):

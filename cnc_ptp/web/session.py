@@ -42,7 +42,7 @@ class Session:
     ) -> None:
         self.hub = hub
         self.user, self.role, self.number = login.user, login.role, number
-        self._access, self._login = access, login
+        self._access, self.login = access, login
         self.is_behind = True
         """It gets the whole state next."""
         self.scope: Stream | None = None
@@ -57,6 +57,10 @@ class Session:
     def label(self) -> str:
         """For people: user and page."""
         return f"{self.user} (page {self.number})"
+
+    def end_jogs(self) -> None:
+        """The page no longer holds the command, or is gone."""
+        self._messages.end()
 
     def shown(self) -> dict[str, Any]:
         return {"user": self.user, "page": self.number}
@@ -130,7 +134,7 @@ class Session:
 
     def require_login(self) -> None:
         """Raises CncError 26239 when the login of the page has ended."""
-        if not self._access.is_valid(self._login):
+        if not self._access.is_valid(self.login):
             raise CncError(SESSION_ENDED, f"the login of {self.user} has ended", "the page is cut off; log in")
 
     def end_without_login(self) -> None:
@@ -156,7 +160,7 @@ class Session:
             message = read_message(text)
             self.require_login()
             if message["type"] != "ping":
-                self._access.logins.use(self._login)
+                self._access.logins.use(self.login)
             handled = self._messages.handle(message)
         except CncError as error:
             self._refuse(message, error)

@@ -9,7 +9,7 @@ from aiohttp.test_utils import TestClient, TestServer
 
 from cnc_ptp.web.access.access import Access
 from cnc_ptp.web.access.guard import Names
-from cnc_ptp.web.access.users import Users
+from cnc_ptp.web.access.users import Users, add_user
 from cnc_ptp.web.faces.machine_face import offline_face
 from cnc_ptp.web.faces.scope import HEAD
 from cnc_ptp.web.hub import Hub
@@ -20,6 +20,7 @@ ROOT = Path(__file__).parents[2]
 MILL = str(ROOT / "config" / "mill.yaml")
 EXAMPLES = str(ROOT / "examples")
 PATIENCE = 10.0
+PASSWORD = "long enough"
 
 
 class Page:
@@ -120,3 +121,25 @@ async def site(machine=MILL, *, connect=None, users=None, programs=EXAMPLES, wai
         yield Site(hub, access, client)
     finally:
         await client.close()
+
+
+def users_file(folder):
+    """One user of each role."""
+    file = folder / "users.yaml"
+    for name, role in (("vera", "viewer"), ("otto", "operator"), ("cora", "commissioner")):
+        add_user(file, name, role, PASSWORD)
+    return file
+
+
+async def log_in(here, user, password=PASSWORD):
+    return await here.client.post("/api/login", json={"user": user, "password": password})
+
+
+async def page_of(here, user):
+    """A page of a user, in the browser that all users of a test share."""
+    assert (await log_in(here, user)).status == 200
+    token = (await (await here.client.get("/api/session")).json())["token"]
+    page = Page(await here.client.ws_connect("/ws"))
+    await page.send(type="hello", token=token)
+    page.hello = await page.wait_for("hello")
+    return page

@@ -332,8 +332,8 @@ def test_headers_of_every_answer():
 @pytest.mark.parametrize(
     ("options", "text"),
     [
-        (("0.0.0.0", None, None, None), "web: others reach 0.0.0.0, and --tls-cert, --tls-key, --users is missing; nothing was started; off loopback it needs TLS and users"),
-        (("192.168.0.5", "c.pem", "k.pem", None), "web: others reach 192.168.0.5, and --users is missing; nothing was started; off loopback it needs TLS and users"),
+        (("0.0.0.0", None, None, None), "web: 0.0.0.0 can be reached by others, and --tls-cert, --tls-key, --users are missing; nothing was started; off loopback it needs TLS and users"),
+        (("192.168.0.5", "c.pem", "k.pem", None), "web: 192.168.0.5 can be reached by others, and --users is missing; nothing was started; off loopback it needs TLS and users"),
         (("127.0.0.1", "c.pem", None, None), "web: --tls-cert and --tls-key belong together; nothing was started"),
     ],
 )  # fmt: skip
@@ -367,7 +367,10 @@ def test_too_many_pages(monkeypatch):
     async def story(here):
         await here.page()
         answer = await here.client.get("/ws")
-        assert (answer.status, (await answer.json())["text"]) == (503, "1 pages are open; nothing was done; close one")
+        assert (answer.status, (await answer.json())["text"]) == (
+            503,
+            "the limit of open pages is reached, 1; nothing was done; close one",
+        )
 
     monkeypatch.setattr("cnc_ptp.web.server.MOST_SESSIONS", 1)
     run(story)

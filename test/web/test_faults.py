@@ -78,9 +78,7 @@ def test_a_stop_waits_for_no_command(monkeypatch):
         slow = Slow(here.hub.face, monkeypatch)
         page = await here.page()
         for number, target in ((11, 1), (12, 2)):
-            await page.send(
-                type="command", id=number, unit="x", command="move_absolute", arguments={"target": target}
-            )
+            await page.send(type="command", id=number, unit="x", command="move_absolute", arguments={"target": target})
         await until(lambda: slow.begun)
         assert (await page.command("x", "halt"))["ok"]
         assert (await page.command("plc", "emergency_stop", enabled=True))["ok"]

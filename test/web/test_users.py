@@ -10,7 +10,7 @@ import pytest
 import trustme
 from aiohttp import WSMsgType, web
 from click.testing import CliRunner
-from web_support import Page, site
+from web_support import PASSWORD, Page, log_in, page_of, site, users_file
 
 from cnc_ptp.cli import main
 from cnc_ptp.errors import CncError
@@ -20,15 +20,10 @@ from cnc_ptp.web.access.security import tls_context
 from cnc_ptp.web.access.users import Users, add_token, add_user, read_users, remove
 from cnc_ptp.web.rate import Rate
 
-PASSWORD = "long enough"
-
 
 @pytest.fixture
 def users(tmp_path):
-    file = tmp_path / "users.yaml"
-    for name, role in (("vera", "viewer"), ("otto", "operator"), ("cora", "commissioner")):
-        add_user(file, name, role, PASSWORD)
-    return file
+    return users_file(tmp_path)
 
 
 def run(story, **options):
@@ -37,20 +32,6 @@ def run(story, **options):
             await story(here)
 
     asyncio.run(told())
-
-
-async def log_in(here, user, password=PASSWORD):
-    return await here.client.post("/api/login", json={"user": user, "password": password})
-
-
-async def page_of(here, user):
-    """A page of a user, in the browser that all users of a test share."""
-    assert (await log_in(here, user)).status == 200
-    token = (await (await here.client.get("/api/session")).json())["token"]
-    page = Page(await here.client.ws_connect("/ws"))
-    await page.send(type="hello", token=token)
-    page.hello = await page.wait_for("hello")
-    return page
 
 
 def test_roles(users):

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import pytest
 from browser_support import InThread, open_page, until
-from fake_machine import Fake
 from web_support import EXAMPLES, MILL, ROOT
 
 from cnc_ptp.web.access.access import Access
@@ -286,32 +285,3 @@ def test_an_empty_position_is_not_zero(mill):
     page.wait_for_selector("text=Not started.")
     assert page.evaluate("document.activeElement.required && document.activeElement.value === ''")
     assert "move_absolute" not in [command for _, _, command in mill.hub.face.users]
-
-
-async def hello_of(hub):
-    return hub.hello(hub.sessions[0])
-
-
-def keys_of(fields):
-    """Names of fields, those of what lies in them too, as far as they are no names of units."""
-    return {name: sorted(value) if isinstance(value, dict) else None for name, value in fields.items()}
-
-
-def test_the_machine_that_is_made_up_tells_what_a_real_one_tells(mill):
-    page = mill()
-    until(page, "app.store.units.x !== undefined && app.store.units.plc !== undefined")
-    fake = Fake()
-    mill.server.do(fake.step())
-    told, made_up = mill.server.do(hello_of(mill.hub)), fake.hello(1)
-    assert set(made_up) == set(told)
-    assert set(made_up["machine"]) == set(told["machine"])
-    for name in ("plc", "channel", "s", "x"):
-        real = next(unit for unit in told["machine"]["units"] if unit["name"] == name)
-        one = next(unit for unit in made_up["machine"]["units"] if unit["name"] == name)
-        assert keys_of(one) == keys_of(real), name
-        assert set(fake.state[name]) == set(page.evaluate(f"app.store.units.{name}")), name
-    assert made_up["machine"]["signals"]["x"][0].keys() == told["machine"]["signals"]["x"][0].keys()
-    assert set(made_up["machine"]["commands"]) == set(told["machine"]["commands"])
-    for kind, commands in made_up["machine"]["commands"].items():
-        for command, arguments in commands.items():
-            assert set(arguments) <= set(told["machine"]["commands"][kind][command]), command

@@ -17,6 +17,8 @@ class Holder(Protocol):
 
     def shown(self) -> dict[str, Any]: ...
 
+    def end_jogs(self) -> None: ...
+
 
 class CommandRight:
     """The session that holds the command, and the one that asks for it."""
@@ -25,9 +27,12 @@ class CommandRight:
         self.holder: Holder | None = None
         self.asking: Holder | None = None
 
-    def take(self, session: Holder) -> None:
-        """Raises CncError 26236 while another session holds it."""
-        if self.holder not in (None, session):
+    def take(self, session: Holder, *, force: bool = False) -> None:
+        """`force`: from another session, whose jogs end. Raises CncError 26236 while another session holds it."""
+        if force and self.holder not in (None, session):
+            assert self.holder is not None
+            self.holder.end_jogs()
+        elif self.holder not in (None, session):
             assert self.holder is not None
             effect = f"{NOTHING}; ask for the command, or wait until it is given"
             raise CncError(NO_COMMAND_RIGHT, f"take_command: {self.holder.label} holds the command", effect)

@@ -11,6 +11,7 @@ from aiohttp.typedefs import Middleware
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.web.numbers import (
+    NO_COMMAND_RIGHT,
     NO_PROGRAM,
     NOT_LOGGED_IN,
     TOO_MANY_LOGINS,
@@ -35,6 +36,7 @@ STATUS = {
     NOT_LOGGED_IN: 401,
     WRONG_ORIGIN: 403,
     WRONG_ROLE: 403,
+    NO_COMMAND_RIGHT: 403,
     NO_PROGRAM: 404,
     TOO_MANY_LOGINS: 429,
     TOO_MANY_MESSAGES: 429,
@@ -51,7 +53,7 @@ class Names:
     names: Collection[str] = LOCAL_NAMES
 
     def require_host(self, request: web.Request) -> None:
-        """Raises CncError 26237: another name may have been bent to this computer (DNS rebinding)."""
+        """Raises CncError 26237: another name may have been rebound to this computer (DNS rebinding)."""
         host = host_name(request.headers.get(hdrs.HOST, ""))
         if host not in [name.lower() for name in self.names]:
             raise CncError(WRONG_ORIGIN, f"host '{host[:60]}' is none of {', '.join(self.names)}", NOTHING)

@@ -6,14 +6,15 @@ from collections.abc import Mapping
 from typing import Any
 
 from cnc_ptp.errors import CncError, nearest_name
-from cnc_ptp.protocol.commands import COMMANDS, INTERNAL
+from cnc_ptp.protocol.commands import COMMANDS, INTERNAL, OF_CHANNELS
 from cnc_ptp.web.numbers import NOT_FROM_PAGES, WRONG_ROLE
 from cnc_ptp.web.protocol import NOTHING
 
 ROLES = ("viewer", "operator", "commissioner")
 """From the least to the most that somebody may do."""
-NOT_FROM_PAGE_ARGUMENTS = frozenset({"file", "files"})
-"""The server reads no file of its computer for a page; programs come from the program folder."""
+NOT_FROM_PAGE_ARGUMENTS = frozenset({"file", "files", "source"}) | OF_CHANNELS
+"""The server reads no file of its computer for a page, as programs come from the program folder; and no page speaks for a
+channel or the plc."""
 OF_OTHERS: Mapping[str, frozenset[str]] = {
     "axis": frozenset({"jog", "overlay", "external_setpoints"}),
     "spindle": frozenset({"overlay"}),

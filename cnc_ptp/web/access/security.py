@@ -20,11 +20,12 @@ def is_loopback(host: str) -> bool:
 
 
 def require_secured(host: str, certificate: str | None, key: str | None, users: str | None) -> None:
-    """Raises CncError 26232 for an address that others reach, without TLS or users."""
+    """Raises CncError 26232 for an address that can be reached by others, without TLS or users."""
     needed = {"--tls-cert": certificate, "--tls-key": key, "--users": users}
     missing = [option for option, value in needed.items() if value is None]
     if missing and not is_loopback(host):
-        reason = f"web: others reach {host}, and {', '.join(missing)} is missing"
+        verb = "is" if len(missing) == 1 else "are"
+        reason = f"web: {host} can be reached by others, and {', '.join(missing)} {verb} missing"
         raise CncError(NOT_SECURED, reason, f"{NOTHING}; off loopback it needs TLS and users")
     if (certificate is None) != (key is None):
         raise CncError(NOT_SECURED, "web: --tls-cert and --tls-key belong together", NOTHING)

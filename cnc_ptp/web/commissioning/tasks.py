@@ -32,7 +32,9 @@ class Tasks:
         """`machine_file` of the machine that runs; None: it is not known, and nothing can be identified."""
         self._file = machine_file
         self._last = 0
-        self._running: dict[int, asyncio.subprocess.Process] = {}
+        self._running: dict[int, asyncio.subprocess.Process | None] = {}
+        """None before its process is there."""
+        self._cancelled: set[int] = set()
         self._results: dict[int, str] = {}
 
     @property
@@ -68,9 +70,32 @@ class Tasks:
         if self._running:
             raise CncError(NOT_IDENTIFIED, "another task runs", f"{NOTHING}; wait for its end, or cancel it")
         self._last += 1
+        self._running[self._last] = None
         return self._last, asyncio.create_task(self._run(self._last, words, tell))
 
     async def _run(self, number: int, words: list[str], tell: Tell) -> None:
+        """Whatever happens, there is a result."""
+        try:
+            output, found, status = await self._output(number, words, tell)
+        except Exception as error:  # no process, no space …
+            output, found, status = repr(error), "", 1
+        finally:
+            del self._running[number]
+        end = "was cancelled" if number in self._cancelled else f"has ended with status {status}"
+        self._cancelled.discard(number)
+        if status or not found:
+            refused = error_fields(CncError(NOT_IDENTIFIED, f"task {number} {end}", "nothing was found"))
+            tell({"type": "result", "task": number, "ok": False, "output": output, **refused})
+            return
+        kind = "picture" if words[0] == "circle" else "values"
+        if kind == "values":
+            self._results[number] = found
+            while len(self._results) > KEPT:
+                del self._results[next(iter(self._results))]
+        tell({"type": "result", "task": number, "ok": True, "output": output, kind: found})
+
+    async def _output(self, number: int, words: list[str], tell: Tell) -> tuple[str, str, int]:
+        """Its report, what it has found, its status."""
         with tempfile.TemporaryDirectory() as folder:
             output = Path(folder) / ("circle.svg" if words[0] == "circle" else "values.yaml")
             command = [sys.executable, "-m", "cnc_ptp", *words, "-o", str(output)]
@@ -82,33 +107,37 @@ class Tasks:
                 preexec_fn=be_nice,
             )
             self._running[number] = process
-            assert process.stdout is not None
+            if number in self._cancelled:
+                process.terminate()
             tell({"type": "progress", "task": number, "text": f"{' '.join(words[:3])} runs"})
             try:
-                text = (await process.stdout.read(MOST_TEXT)).decode(errors="replace")
+                text = await self._read(number, process, tell)
                 status = await process.wait()
             finally:
-                del self._running[number]
                 with contextlib.suppress(ProcessLookupError):
                     process.kill()
-            found = output.read_text(encoding="utf-8") if output.exists() else ""
-        if status or not found:
-            error = CncError(NOT_IDENTIFIED, f"task {number} has ended with status {status}", "nothing was found")
-            tell({"type": "result", "task": number, "ok": False, "output": text, **error_fields(error)})
-            return
-        kind = "picture" if words[0] == "circle" else "values"
-        if kind == "values":
-            self._results[number] = found
-            while len(self._results) > KEPT:
-                del self._results[next(iter(self._results))]
-        tell({"type": "result", "task": number, "ok": True, "output": text, kind: found})
+            return text, output.read_text(encoding="utf-8") if output.exists() else "", status
+
+    @staticmethod
+    async def _read(number: int, process: asyncio.subprocess.Process, tell: Tell) -> str:
+        """All that it says, to its end; each piece is told as progress. Of a long report the end is kept."""
+        assert process.stdout is not None
+        text = b""
+        while piece := await process.stdout.read(1 << 16):
+            text = (text + piece)[-MOST_TEXT:]
+            lines = piece.decode(errors="replace").strip().splitlines()
+            if lines:
+                tell({"type": "progress", "task": number, "text": lines[-1]})
+        return text.decode(errors="replace")
 
     def cancel(self, number: int) -> None:
         """Raises CncError 26256 for a task that does not run."""
-        process = self._running.get(number)
-        if process is None:
+        if number not in self._running:
             raise CncError(NOT_IDENTIFIED, f"task {number} does not run", NOTHING)
-        process.terminate()
+        self._cancelled.add(number)
+        process = self._running[number]
+        if process is not None:
+            process.terminate()
 
     def accept(self, number: int, name: str) -> str:
         """Writes a machine file with the result beside that of the machine; its path.
@@ -121,8 +150,9 @@ class Tasks:
 
     def close(self) -> None:
         for process in self._running.values():
-            with contextlib.suppress(ProcessLookupError):
-                process.terminate()
+            if process is not None:
+                with contextlib.suppress(ProcessLookupError):
+                    process.terminate()
 
 
 def be_nice() -> None:

@@ -6,8 +6,11 @@ import json
 from typing import Any
 
 from cnc_ptp.protocol.blocks import CommandRecord, HandshakeRequest
+from cnc_ptp.protocol.unit import PLC
 
 SWITCHES = ("single_block", "optional_stop", "block_skip", "feed_hold", "suppress_override", "stop_at_program_end")
+EMERGENCY_STOP = "emergency_stop"
+"""Of the plc; that of an axis is no switch."""
 TOOLS = {"T": "tool", "D": "tool_data"}
 """Kind of a request -> field of the channel."""
 
@@ -16,11 +19,12 @@ class Switches:
     """Unit -> field -> value."""
 
     def __init__(self) -> None:
-        self.fields: dict[str, dict[str, Any]] = {}
+        self.fields: dict[str, dict[str, Any]] = {PLC: {EMERGENCY_STOP: False}}
 
     def take_record(self, record: CommandRecord) -> None:
         """A switch that was commanded, by whomever."""
-        if record.accepted and record.command in SWITCHES:
+        is_switch = record.command in SWITCHES or (record.target, record.command) == (PLC, EMERGENCY_STOP)
+        if record.accepted and is_switch:
             given = json.loads(record.arguments_json)
             enabled = given.get("enabled", given.get("on"))  # its former name
             self.fields.setdefault(record.target, {})[record.command] = bool(enabled)

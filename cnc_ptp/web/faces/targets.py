@@ -19,7 +19,9 @@ class Targets:
     def __init__(self, axes: Sequence[str]) -> None:
         self.positions: dict[str, float | None] = dict.fromkeys(axes)
 
-    def take_record(self, record: CommandRecord, blocks: Sequence[tuple[str, CycleBlock]], state: Mapping[str, Any]) -> None:
+    def take_record(
+        self, record: CommandRecord, blocks: Sequence[tuple[str, CycleBlock]], state: Mapping[str, Any]
+    ) -> None:
         """A command that was given, by whomever; `blocks` that came with it, `state` of the units before."""
         if not record.accepted or record.target not in self.positions:
             return

@@ -10,14 +10,18 @@ from cnc_ptp.client.faults import unknown_unit
 from cnc_ptp.errors import CncError
 from cnc_ptp.web.access.access import Access
 from cnc_ptp.web.access.guard import refuse
+from cnc_ptp.web.access.logins import Login
 from cnc_ptp.web.access.rights import require_role
 from cnc_ptp.web.hub import Hub
-from cnc_ptp.web.numbers import PROGRAM_EXISTS, TOO_LARGE, TOO_MANY_MESSAGES
+from cnc_ptp.web.numbers import NO_COMMAND_RIGHT, PROGRAM_EXISTS, TOO_LARGE, TOO_MANY_MESSAGES
 from cnc_ptp.web.programs.backplot import Drawing
-from cnc_ptp.web.programs.programs import require_name
+from cnc_ptp.web.programs.programs import SUFFIXES, require_name
 from cnc_ptp.web.rate import Rate
 
 PLAIN = "text/plain"
+MOST_UPLOADS = 4
+"""At once: each is in memory until it is whole."""
+NOT_WRITTEN = "nothing was written"
 
 
 class ProgramRoutes:
@@ -26,6 +30,8 @@ class ProgramRoutes:
     def __init__(self, hub: Hub, access: Access) -> None:
         self._hub, self._access = hub, access
         self._rate = Rate(1.0, 20.0)
+        self._uploads = 0
+        self._drawings = Rate(10.0, 100.0)
 
     def add_to(self, app: web.Application) -> None:
         app.router.add_get("/api/programs", self._list)
@@ -37,7 +43,7 @@ class ProgramRoutes:
         self._access.login_of(request)
         folder = self._hub.folder
         programs = await asyncio.to_thread(folder.list)
-        return web.json_response({"programs": programs, "limit": folder.largest})
+        return web.json_response({"programs": programs, "limit": folder.largest, "endings": [*SUFFIXES]})
 
     async def _text(self, request: web.Request) -> web.StreamResponse:
         """Always as plain text: what is in a program is never taken for a page."""
@@ -51,19 +57,34 @@ class ProgramRoutes:
         login = self._access.require_page(request)
         require_role("upload", login.user, login.role, "operator")
         if not self._rate.permits():
-            raise CncError(TOO_MANY_MESSAGES, "upload: too many programs in a short time", "nothing was written; wait")
+            raise CncError(TOO_MANY_MESSAGES, "upload: too many programs in a short time", f"{NOT_WRITTEN}; wait")
         name = request.query.get("name", "")
         require_name(name)
+        replace = request.query.get("replace") == "1"
+        if replace:
+            self._require_command(login, name)
+        if self._uploads >= MOST_UPLOADS:
+            raise CncError(TOO_MANY_MESSAGES, f"upload: {MOST_UPLOADS} others are on their way", NOT_WRITTEN)
+        self._uploads += 1
         try:
             content = await self._content(request)
-            replace = request.query.get("replace") == "1"
             listed = await asyncio.to_thread(self._hub.folder.save, name, content, replace=replace)
         except CncError as error:
             if error.number == TOO_LARGE:
                 request.protocol.close()  # the rest is not even read
             return refuse(error, {TOO_LARGE: 413, PROGRAM_EXISTS: 409}.get(error.number, 400))
+        finally:
+            self._uploads -= 1
+        self._hub.note(f"{login.user}: program {name} {'replaced' if replace else 'uploaded'}, {listed.size} bytes")
         self._hub.to_all({"type": "programs"})
         return web.json_response(listed._asdict())
+
+    def _require_command(self, login: Login, name: str) -> None:
+        """A program may be replaced while it is loaded: by whoever commands. Raises CncError 26236."""
+        holder = self._hub.right.holder
+        if not any(session is holder and session.login is login for session in self._hub.sessions):
+            reason = f"upload: '{name}' is replaced only by a page that holds the command"
+            raise CncError(NO_COMMAND_RIGHT, reason, NOT_WRITTEN)
 
     async def _backplot(self, request: web.Request) -> web.StreamResponse:
         """`?channel=C`: the path of its program (backplot.py says in which form)."""
@@ -72,6 +93,8 @@ class ProgramRoutes:
         channel = request.query.get("channel", "channel")
         if face.kinds.get(channel) != "channel":
             raise unknown_unit(channel, [unit for unit, kind in face.kinds.items() if kind == "channel"], "channel")
+        if not self._drawings.permits():
+            raise CncError(TOO_MANY_MESSAGES, "backplot: too many requests in a short time", "nothing was read; wait")
         load = await asyncio.to_thread(self._hub.programs.loaded_text, channel)
         files = load.files if load.files or face.is_recording else None
         drawing = Drawing(channel, face.kinds, face.sets, face.cycle_time, load.text or "", load.path, files=files)

@@ -1,0 +1,259 @@
+"""What pages share: the command, the program folder, and what the machine tells all of them."""
+
+import asyncio
+from types import SimpleNamespace
+
+import pytest
+from web_support import page_of, site, users_file
+
+from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, CommandRecord, HandshakeRequest
+from cnc_ptp.web.commissioning.tasks import Tasks
+from cnc_ptp.web.faces.targets import Targets
+
+
+@pytest.fixture
+def users(tmp_path):
+    return users_file(tmp_path)
+
+
+def run(story, **options):
+    async def told():
+        async with site(**options) as here:
+            await asyncio.wait_for(story(here), 60.0)
+
+    asyncio.run(told())
+
+
+def record(command, *, cycle=10, **arguments):
+    return CommandRecord(cycle, "x", command, arguments, True, 0, "")
+
+
+def test_the_target_of_an_axis():
+    targets = Targets(["x"])
+    block = AxisBlock(0, 20, set_position=[0.5 * n for n in range(20)])
+    moving, standing = (
+        {"x": {"set_position": 1.0, "set_velocity": 2.0}},
+        {"x": {"set_position": 1.0, "set_velocity": 0.0}},
+    )
+    for given, blocks, state, wanted in (
+        (record("move_absolute", target=5.0), [], {}, 5.0),
+        (record("move_additive", distance=2.0), [], {}, 7.0),
+        (record("move_relative", distance=2.0), [("x", block)], moving, 6.5),
+        (record("move_relative", distance=2.0), [], standing, 3.0),
+        (record("move_relative", distance=2.0), [], moving, None),
+        (record("move_additive", distance=2.0), [], moving, None),
+        (record("new_target", target=1.0), [], {}, 1.0),
+        (record("set_override", percent=50), [], {}, 1.0),
+        (record("halt"), [], {}, None),
+    ):
+        targets.take_record(given, blocks, state)
+        assert targets.fields("x") == {"target": wanted}, given
+    refused = CommandRecord(10, "x", "move_absolute", {"target": 9.0}, False, 1, "")
+    targets.take_record(refused, [], {})
+    assert targets.fields("x") == {"target": None} and targets.fields("plc") == {}
+
+
+def test_the_state_has_targets_and_the_emergency_stop():
+    async def story(here):
+        page = await here.page()
+        state = await page.wait_for("state", lambda state: "plc" in state["units"])
+        assert state["units"]["plc"]["emergency_stop"] is False
+        assert state["units"]["x"]["target"] is None
+        assert (await page.command("x", "move_absolute", target=1.5))["ok"]
+        await page.state_of("x", lambda x: x.get("target") == 1.5)
+        assert (await page.command("plc", "emergency_stop", enabled=True))["ok"]
+        await page.state_of("plc", lambda plc: plc.get("emergency_stop") is True)
+        other = await here.page(commands=False)
+        await other.state_of("plc", lambda plc: plc.get("emergency_stop") is True)
+
+    run(story)
+
+
+def test_handshakes_of_a_program_that_was_reset():
+    async def story(here):
+        page = await here.page()
+        request = HandshakeRequest(5, 7, "channel", "M", "", 6, 0.0, 1, True)
+        here.hub._tell_request(request)
+        assert (await page.wait_for("handshake"))["id"] == 7
+        here.hub._drop_handshakes("channel", ChannelBlock(0, 20, done=True))  # from before it
+        here.hub._drop_handshakes("channel", ChannelBlock(6, 20, done=False))
+        assert 7 in here.hub.handshakes
+        here.hub._drop_handshakes("channel", ChannelBlock(6, 20, done=True))
+        assert await page.wait_for("handshake_done") == {"type": "handshake_done", "id": 7}
+
+    run(story)
+
+
+def test_the_command_is_taken_from_a_page_that_was_left(users):
+    async def story(here):
+        otto = await page_of(here, "otto")
+        assert (await otto.ask("take_command"))["ok"]
+        operator = await otto.ask("take_command", force=True)
+        text = "take_command: otto is operator; it takes the role commissioner; nothing was done"
+        assert (operator["number"], operator["text"]) == (26235, text)
+        ended = []
+        here.hub.right.holder.end_jogs = lambda: ended.append(True)
+        cora = await page_of(here, "cora")
+        assert not (await cora.ask("take_command"))["ok"]
+        assert (await cora.ask("take_command", force=True))["ok"]
+        told = await otto.wait_for("operator", lambda told: told["holder"]["user"] == "cora")
+        assert told["asking"] is None and ended == [True]
+        text = f"cora (page {told['holder']['page']}): take_command"
+        assert await otto.wait_for("event", lambda event: event["text"] == text)
+
+    run(story, users=users)
+
+
+def test_a_program_is_replaced_by_whoever_commands(tmp_path):
+    async def story(here):
+        page = await here.page(commands=False)
+        token = {"X-Token": await here.token()}
+        path = "/api/programs?name=part.nc"
+        assert (await here.client.post(path, data=b"M30\n", headers=token)).status == 200
+        answer = await here.client.post(f"{path}&replace=1", data=b"G1\n", headers=token)
+        text = "upload: 'part.nc' is replaced only by a page that holds the command; nothing was written"
+        error = await answer.json()
+        assert (answer.status, error["number"], error["text"]) == (403, 26236, text)
+        assert (await page.ask("take_command"))["ok"]
+        assert (await here.client.post(f"{path}&replace=1", data=b"G1\n", headers=token)).status == 200
+        assert (tmp_path / "part.nc").read_text() == "G1\n"
+        for text in ("web: program part.nc uploaded, 4 bytes", "web: program part.nc replaced, 3 bytes"):
+            assert await page.wait_for("event", lambda event, text=text: event["text"] == text)
+        listed = await (await here.client.get("/api/programs")).json()
+        assert ".tap" in listed["endings"] and ".txt" not in listed["endings"]
+
+    run(story, programs=str(tmp_path))
+
+
+def test_too_many_uploads_at_once(tmp_path, monkeypatch):
+    monkeypatch.setattr("cnc_ptp.web.programs.program_routes.MOST_UPLOADS", 0)
+
+    async def story(here):
+        token = {"X-Token": await here.token()}
+        answer = await here.client.post("/api/programs?name=part.nc", data=b"M30\n", headers=token)
+        text = "upload: 0 others are on their way; nothing was written"
+        assert (answer.status, (await answer.json())["text"]) == (429, text)
+
+    run(story, programs=str(tmp_path))
+
+
+def test_too_many_pages_of_one_user(users, monkeypatch):
+    monkeypatch.setattr("cnc_ptp.web.server.MOST_OF_USER", 1)
+
+    async def story(here):
+        await page_of(here, "vera")
+        answer = await here.client.get("/ws")
+        text = "the limit of open pages of vera is reached, 1; nothing was done; close one"
+        assert (answer.status, (await answer.json())["text"]) == (503, text)
+        await page_of(here, "otto")
+
+    run(story, users=users)
+
+
+def test_acknowledged_alarms_are_noted():
+    async def story(here):
+        page = await here.page()
+        assert not (await page.command("x", "move_absolute", target=5000))["ok"]
+        alarm = (await page.wait_for("event", lambda event: event.get("alarm")))["alarm"]
+        assert (await page.ask("acknowledge"))["ok"]
+        text = f"web: alarms {alarm} acknowledged"
+        assert await page.wait_for("event", lambda event: event["text"] == text)
+
+    run(story)
+
+
+def test_a_snapshot_is_sent_piece_by_piece_and_alone(monkeypatch, users):
+    may_end = asyncio.Event()
+
+    async def snapshot(file, seconds):
+        await may_end.wait()
+        with open(file, "wb") as stream:
+            stream.write(b"x" * 600_000)
+
+    async def story(here):
+        monkeypatch.setattr(here.hub.face, "snapshot", snapshot)
+        await page_of(here, "vera")
+        answer = await here.client.get("/api/snapshot.mcap")
+        text = "snapshot: vera is viewer; it takes the role operator; nothing was done"
+        assert (answer.status, (await answer.json())["text"]) == (403, text)
+        await page_of(here, "otto")
+        first = asyncio.create_task(here.client.get("/api/snapshot.mcap"))
+        await asyncio.sleep(0.2)
+        answer = await here.client.get("/api/snapshot.mcap")
+        text = "snapshot: another one is on its way; nothing was done; wait for it"
+        assert (answer.status, (await answer.json())["text"]) == (429, text)
+        may_end.set()
+        answer = await first
+        assert await answer.read() == b"x" * 600_000 and answer.headers["X-Frame-Options"] == "DENY"
+
+    run(story, users=users)
+
+
+def test_too_many_requests():
+    async def story(here):
+        await here.token()
+        answers = [await here.client.get("/api/parameters", params={"unit": "x"}) for _ in range(3)]
+        assert [answer.status for answer in answers] == [200, 200, 429]
+        text = "too many requests in a short time; nothing was read; wait"
+        assert (await answers[-1].json())["text"] == text
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("cnc_ptp.web.data_routes.Rate", lambda *_: SimpleNamespace(permits=iter((1, 1, 0)).__next__))
+        run(story)
+
+
+def test_a_task_before_its_process_is_there(tmp_path):
+    """Two pages begin one at once; and one is cancelled before it has begun."""
+
+    async def story():
+        tasks, told = Tasks(None), []
+        number, task = tasks.begin(["--help"], told.append)
+        with pytest.raises(Exception, match="another task runs"):
+            tasks.begin(["--help"], told.append)
+        tasks.cancel(number)
+        await task
+        [result] = [message for message in told if message["type"] == "result"]
+        assert result["text"] == f"task {number} was cancelled; nothing was found"
+        _, task = tasks.begin(["--help"], told.append)
+        await task
+
+    asyncio.run(story())
+
+
+def test_a_task_without_a_process(monkeypatch):
+    async def no_process(*arguments, **options):
+        raise OSError("no memory")
+
+    async def story():
+        tasks, told = Tasks(None), []
+        monkeypatch.setattr("asyncio.create_subprocess_exec", no_process)
+        number, task = tasks.begin(["identify"], told.append)
+        await task
+        assert told == [
+            {
+                **told[0],
+                "type": "result",
+                "ok": False,
+                "output": "OSError('no memory')",
+                "text": f"task {number} has ended with status 1; nothing was found",
+            }
+        ]
+
+    asyncio.run(story())
+
+
+def test_a_report_in_pieces():
+    """A warning first, the report later, more than a pipe takes."""
+
+    async def story():
+        told = []
+        script = "import sys,time;print('warning',file=sys.stderr,flush=True);time.sleep(0.3);print('r'*300000)"
+        process = await asyncio.create_subprocess_exec(
+            "python3", "-c", script, stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.STDOUT
+        )
+        text = await Tasks._read(1, process, told.append)
+        await process.wait()
+        assert text.startswith("warning\n") and text.count("r") > 300_000
+        assert told[0] == {"type": "progress", "task": 1, "text": "warning"}
+
+    asyncio.run(story())
