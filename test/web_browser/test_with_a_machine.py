@@ -285,3 +285,28 @@ def test_an_empty_position_is_not_zero(mill):
     page.wait_for_selector("text=Not started.")
     assert page.evaluate("document.activeElement.required && document.activeElement.value === ''")
     assert "move_absolute" not in [command for _, _, command in mill.hub.face.users]
+
+
+def test_the_emergency_stop_and_its_release_are_seen_on_other_pages(mill):
+    page, other = mill(), mill(command=False)
+    page.click("text=Emergency stop")
+    other.wait_for_selector(".pill >> text=Emergency stop")
+    page.on("dialog", lambda dialog: dialog.accept())
+    page.click("text=Release stop")
+    until(other, "!app.store.inEmergency")
+
+
+def test_the_target_of_an_axis_is_shown(mill):
+    page = mill("commission")
+    page.evaluate("() => void app.command('x', 'move_absolute', { target: 7.25 })")
+    page.wait_for_selector(".reading:has-text('Target position') >> text=7.2500")
+
+
+def test_a_jog_ends_when_a_commissioner_takes_the_command_over(mill):
+    page, other = mill(), mill(command=False)
+    jog_until_it_moves(page)
+    other.on("dialog", lambda dialog: dialog.accept())
+    other.click("text=Take over")
+    until(other, "app.store.holds")
+    until(other, "app.store.units.x.state === 'Standstill'")
+    page.mouse.up()
