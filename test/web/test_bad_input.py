@@ -139,7 +139,7 @@ def test_a_wrong_token(first, number, text):
 
 def test_no_cookie():
     async def story(here):
-        for path in ("/api/session", "/api/programs", "/ws"):
+        for path in ("/api/programs", "/api/backplot", "/ws"):
             answer = await here.client.get(path)
             text = "there is no login, or it has ended; nothing was done; log in"
             assert (answer.status, (await answer.json())["text"]) == (401, text)
@@ -199,6 +199,7 @@ def test_an_upload(tmp_path):
             assert answer.status == status
         text = "program 'a.nc' is in the folder already; nothing was written"
         assert ((await answer.json())["number"], (await answer.json())["text"]) == (26257, text)
+        await here.page()  # with the command
         answer = await here.client.post("/api/programs?name=a.nc&replace=1", data=b"G4 X1\nM30\n", headers=token)
         assert await answer.json() == {"name": "a.nc", "size": 10}
         assert (tmp_path / "a.nc").read_bytes() == b"G4 X1\nM30\n"

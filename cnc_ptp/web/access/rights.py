@@ -13,7 +13,7 @@ from cnc_ptp.web.protocol import NOTHING
 ROLES = ("viewer", "operator", "commissioner")
 """From the least to the most that somebody may do."""
 NOT_FROM_PAGE_ARGUMENTS = frozenset({"file", "files", "source"}) | OF_CHANNELS
-"""The server reads no file of its computer for a page, as programs come from the program folder; and no page speaks for a
+"""The server reads no file of its computer for a page: programs come from the program folder. And no page speaks for a
 channel or the plc."""
 OF_OTHERS: Mapping[str, frozenset[str]] = {
     "axis": frozenset({"jog", "overlay", "external_setpoints"}),
