@@ -79,6 +79,14 @@ class Fake:
     def __init__(self, *, points: int = 3000, recording: bool = False) -> None:
         self.points, self.recording = points, recording
         self.received: list[dict[str, Any]] = []
+        self.pings: list[dict[str, Any]] = []
+        self.delay = 0.0
+        """Seconds until a ping is answered."""
+        self.role, self.has_login, self.logged_in = "commissioner", False, True
+        self.needs_welcome = False
+        """Who is not logged in is by looking at the page."""
+        self.backplot_delays: list[float] = []
+        self.backplot_fails = False
         self.sockets: list[web.WebSocketResponse] = []
         self.programs = {"bracket.nc": PROGRAM, NASTY: "N10 (<script>window.hacked = true</script>)\nN20 M30"}
         self.holder: int | None = None
@@ -86,15 +94,16 @@ class Fake:
         self.cycle = 0
         self.signals: dict[int, list[str]] = {}
         self.state = {
-            "plc": {"emergency_stop": False},
-            "channel": {"state": "ready", "active": False, "line": 0, "override": 100.0, "progress": 0.0, "time_left": -1.0, "program": "", "text": "", "tool": 1},
-            "s": {"state": "Standstill", "set_speed": 0.0, "speed": 0.0, "override": 100.0, "gear": 1, "modes": ["stop"], "error": 0},
-            **{name: {"state": "Standstill", "override": 100.0, "error": 0, "status_bits": 16, "master": ""} for name in "xyz"},
+            "plc": {"scenario_done": True, "run_done": False, "emergency_stop": False},
+            "channel": {"state": "ready", "active": False, "line": 0, "block_number": 0, "feed": 0.0, "programmed_feed": 0.0, "override": 100.0, "distance_to_go": 0.0, "blocks_done": 0, "blocks_total": 400, "progress": 0.0, "time_left": -1.0, "job": "", "error": 0, "program": "", "file": "", "text": "", "manual": False},
+            "s": {"state": "Standstill", "set_speed": 0.0, "speed": 0.0, "programmed_speed": 0.0, "set_position": 0.0, "actual_position": 0.0, "distance_to_go": 0.0, "following_error": 0.0, "override": 100.0, "gear": 1, "modes": ["stop"], "speed_reached": True, "speed_zero": True, "in_position": True, "referenced": True, "gear_change_active": False, "status_bits": 0, "master": "", "job": "", "error": 0},
+            **{name: {"state": "Standstill", "override": 100.0, "feedforward": 0.0, "set_acceleration": 0.0, "torque": 0.5, "torque_digits": 20.0, "error": 0, "status_bits": 16, "master": "", "job": ""} for name in "xyz"},
         }  # fmt: skip
         self.alarm = 0
         self.app = web.Application(client_max_size=10_000_000)
         self.app.router.add_get("/", self._index)
         self.app.router.add_get("/api/session", self._session)
+        self.app.router.add_post("/api/logout", self._log_out)
         self.app.router.add_get("/api/programs", self._list)
         self.app.router.add_post("/api/programs", self._upload)
         self.app.router.add_get("/api/programs/{name}", self._program)
@@ -120,14 +129,28 @@ class Fake:
     # HTTP
 
     async def _index(self, _request: web.Request) -> web.StreamResponse:
+        self.logged_in = self.logged_in or self.needs_welcome
         return web.FileResponse(STATIC / "index.html")
 
     async def _session(self, _request: web.Request) -> web.Response:
-        return web.json_response({"user": "web", "role": "commissioner", "token": "token", "login": False})
+        if not self.logged_in:
+            return web.json_response({"number": 26238, "text": "there is no login"}, status=401)
+        return web.json_response({"user": "web", "role": self.role, "token": "token", "login": self.has_login})
+
+    async def _log_out(self, request: web.Request) -> web.Response:
+        assert request.headers["X-Token"] == "token"
+        self.logged_in = False
+        for socket in [*self.sockets]:
+            await socket.close()
+        return web.json_response({})
 
     async def _list(self, _request: web.Request) -> web.Response:
         return web.json_response(
-            {"programs": [{"name": name, "size": len(text)} for name, text in self.programs.items()]}
+            {
+                "programs": [{"name": name, "size": len(text)} for name, text in self.programs.items()],
+                "limit": 32 << 20,
+                "endings": [".nc", ".ngc", ".cnc", ".tap", ".mpf", ".spf"],
+            }
         )
 
     async def _upload(self, request: web.Request) -> web.Response:
@@ -139,7 +162,11 @@ class Fake:
         return web.Response(text=self.programs[request.match_info["name"]])
 
     async def _backplot(self, _request: web.Request) -> web.Response:
-        n = self.points
+        n = self.points  # as it was when it was asked for
+        if self.backplot_delays:
+            await asyncio.sleep(self.backplot_delays.pop(0))
+        if self.backplot_fails:
+            return web.json_response({"number": 26242, "text": "no program is loaded"}, status=404)
         i = np.arange(n)
         angle = i * 0.05
         radius = 20 + 30 * i / n
@@ -184,9 +211,12 @@ class Fake:
             "name": "channel",
             "kind": "channel",
             "axes": [{"unit": n, "name": n.upper()} for n in "xyz"],
+            "spindles": ["s"],
             "turning": False,
+            "limits": {"override": 200.0},
         }
-        units = [{"name": "plc", "kind": "plc"}, channel, {"name": "s", "kind": "spindle"}, *(axis(n) for n in "xyz")]
+        spindle = {"name": "s", "kind": "spindle", "limits": {"speed": 12000.0, "gears": [1, 2], "override": 200.0}}
+        units = [{"name": "plc", "kind": "plc"}, channel, spindle, *(axis(n) for n in "xyz")]
         signals = {n: [{"field": f, "unit": "mm"} for f in FIELDS] for n in "xyz"} | {
             "s": [{"field": "actual_speed_rpm", "unit": "rpm"}]
         }
@@ -216,7 +246,7 @@ class Fake:
             "programs": [],
             "version": 1,
             "user": "web",
-            "role": "commissioner",
+            "role": self.role,
             "page": page,
             "machine": machine,
             "operator": self.operator(),
@@ -236,6 +266,11 @@ class Fake:
             if received.type is not WSMsgType.TEXT:
                 continue
             message = json.loads(received.data)
+            if message["type"] == "ping":
+                self.pings.append(message)
+                await asyncio.sleep(self.delay)
+                await socket.send_json({"type": "pong", "time": message["time"]})
+                continue
             self.received.append(message)
             await self._take(socket, page, message)
         self.signals.pop(page, None)
@@ -253,7 +288,7 @@ class Fake:
             await self.tell({"type": "operator", **self.operator()})
         elif kind == "scope":
             self.signals[page] = message["signals"]
-            fields = {"stream": page, "signals": message["signals"], "bits": 32}
+            fields = {"stream": page, "signals": message["signals"], "bits": 64}
         elif kind == "scope_stop":
             self.signals.pop(page, None)
         elif kind == "command":
@@ -284,6 +319,9 @@ class Fake:
             state["override"] = arguments["percent"]
         elif command == "feed_hold":
             state["state"] = "hold" if arguments["enabled"] else "running"
+        elif command == "home":
+            asyncio.get_running_loop().call_later(0.1, state.update, {"state": "Homing"})
+            asyncio.get_running_loop().call_later(0.6, state.update, {"state": "Standstill"})
         elif command == "reset" and unit == "channel":
             state |= {"state": "ready", "active": False, "line": 0}
         elif command == "emergency_stop":
@@ -340,6 +378,10 @@ class Fake:
                 ]
                 await self.tell({"type": "diagnostics", "nodes": nodes})
 
+    async def step(self) -> None:
+        """The state as it is with the next cycles."""
+        await self._tell_state()
+
     async def _tell_state(self) -> None:
         angle = self.time * 0.5
         places = {"x": 50 * cos(angle), "y": 50 * sin(angle), "z": -5.0}
@@ -354,6 +396,7 @@ class Fake:
                 "velocity": 24.8,
                 "command_velocity": 25.1,
                 "target_velocity": 25.0,
+                "target": 60.0,
             }
         channel = self.state["channel"]
         if channel["state"] == "running":
@@ -370,7 +413,7 @@ class Fake:
         cycles = np.arange(self.cycle - CYCLES, self.cycle)
         for page, names in self.signals.items():
             socket = self.sockets[page - 1]
-            columns = np.concatenate([self.column(name, cycles) for name in names]).astype("<f4")
+            columns = np.concatenate([self.column(name, cycles) for name in names]).astype("<f8")
             if not socket.closed:
                 await socket.send_bytes(
                     struct.pack("<5I", page, self.cycle - CYCLES, 0, len(names), CYCLES) + columns.tobytes()

@@ -3,6 +3,7 @@
 from itertools import pairwise
 
 import pytest
+from browser_support import until
 
 LOST = {
     "pointerup": "() => 0",
@@ -11,6 +12,8 @@ LOST = {
     "pagehide": "() => window.dispatchEvent(new Event('pagehide'))",
     "pointercancel": "() => document.querySelector('[data-jog=x]').dispatchEvent(new PointerEvent('pointercancel'))",
     "lost capture": "() => document.querySelector('[data-jog=x]').dispatchEvent(new PointerEvent('lostpointercapture'))",
+    "Meta": "() => document.body.dispatchEvent(new KeyboardEvent('keydown', { key: 'Meta', bubbles: true }))",
+    "help": "() => document.dispatchEvent(new KeyboardEvent('keydown', { key: 'F1' }))",
     "another page": "() => { location.hash = 'watch'; }",
     "the command is lost": "() => app.store.take({type: 'operator', holder: {user: 'anna', page: 99}, asking: null}) || app.store.tell('operator')",
 }
@@ -84,6 +87,106 @@ def test_jog_by_keys(look, fake):
     page.keyboard.up("ArrowUp")
     wait_for(page, lambda: fake.received[-1]["type"] == "jog_stop")
     assert {(message["axis"], message["velocity"]) for message in jogs(fake)} == {("y", 166)}
+
+
+def test_the_end_of_shift_ends_a_rapid_jog(look, fake):
+    page = look(command=True)
+    page.click("text=Jog keys")
+    page.keyboard.down("Shift")
+    page.keyboard.down("ArrowRight")
+    wait_for(page, lambda: len(jogs(fake)) >= 3)
+    page.keyboard.up("Shift")
+    wait_for(page, lambda: fake.received[-1]["type"] == "jog_stop")
+    page.keyboard.up("ArrowRight")
+
+
+def test_the_jog_keys_do_nothing_behind_the_help(look, fake):
+    page = look(command=True)
+    page.click("text=Jog keys")
+    page.keyboard.press("F1")
+    page.keyboard.press("F1")
+    assert page.locator("dialog[open]").count() == 1
+    page.keyboard.down("ArrowRight")
+    page.wait_for_timeout(200)
+    page.keyboard.up("ArrowRight")
+    assert jogs(fake) == []
+
+
+def test_a_jog_is_refused_where_messages_take_too_long(look, fake):
+    fake.delay = 0.3
+    page = look(command=True)
+    until(page, "Number.isFinite(app.roundTrip.time)")
+    page.wait_for_selector(".round-trip[data-kind=warn] >> text=/[0-9]+ ms/")
+    page.evaluate("app.jogger.start('x', 10)")
+    page.wait_for_selector(".notice >> text=/Messages to the server and back take [0-9]+ ms, more than 150 ms/")
+    assert jogs(fake) == []
+    wait_for(page, lambda: len(fake.pings) >= 2)
+    assert "round_trip" not in fake.pings[0] and fake.pings[-1]["round_trip"] >= 300
+    fake.delay = 0.0
+    until(page, "app.roundTrip.time < 150")
+    page.evaluate("app.jogger.start('x', 10)")
+    wait_for(page, lambda: len(jogs(fake)) >= 2)
+
+
+def test_axes_are_homed_one_after_the_other_after_a_question(look, fake):
+    page = look(command=True)
+    answers = [False, True]
+    asked = []
+
+    def answer(dialog):
+        asked.append(dialog.message)
+        dialog.accept() if answers.pop(0) else dialog.dismiss()
+
+    page.on("dialog", answer)
+    page.click("summary:text-is('Enable, home')")
+    page.click("text=Home axes")
+    page.wait_for_timeout(100)
+    assert commands(fake) == [None]
+    page.click("text=Home axes")
+    wait_for(page, lambda: homed(fake) == ["z"])
+    assert asked[0] == "Home all axes, one after the other: Z, X, Y? Look whether their ways are free."
+    page.wait_for_timeout(300)
+    assert homed(fake) == ["z"]
+    wait_for(page, lambda: homed(fake) == ["z", "x", "y"])
+
+
+def homed(fake):
+    return [message["unit"] for message in fake.received if message.get("command") == "home"]
+
+
+def test_the_spindle_panel(look, fake):
+    page = look(command=True)
+    speed = page.locator("label:text-is('Speed in rpm') + input")
+    speed.fill("800")
+    page.click("button >> text=ccw")
+    wait_for(page, lambda: commands(fake)[-1] == ("start", {"direction": "ccw", "speed_rpm": 800}))
+    speed.fill("")
+    page.click("button >> text=ccw")
+    page.click("text=Set speed")
+    page.click("summary:text-is('Orient, gear, coupling')")
+    angle = page.locator("label:text-is('Angle in °') + input")
+    angle.fill("")
+    page.click("text=Orient >> nth=-1")
+    assert page.locator("label:text-is('Gear') + select option").all_inner_texts() == ["1", "2"]
+    page.select_option("label:text-is('Gear') + select", "2")
+    page.click("text=Select gear")
+    wait_for(page, lambda: commands(fake)[-1] == ("select_gear", {"stage": 2}))
+    assert len(commands(fake)) == 2  # empty fields gave none
+    page.click("section:has(h2:text-is('Spindle s')) >> button:text-is('Stop')")
+    wait_for(page, lambda: commands(fake)[-1] == ("stop", {}))
+
+
+def test_a_view_that_is_left_listens_no_more(look):
+    page = look()
+    count = "[...app.store._listeners.values()].reduce((sum, one) => sum + one.size, 0)"
+    page.wait_for_selector(".positions")
+    before = page.evaluate(count)
+    for _ in range(3):
+        page.evaluate("location.hash = 'alarms'")
+        page.wait_for_selector("main.alarms .events")
+        page.evaluate("location.hash = 'operate'")
+        page.wait_for_selector(".positions")
+    assert page.evaluate(count) == before
 
 
 def test_the_page_that_hangs_ends_its_jog(look, fake):
@@ -164,6 +267,7 @@ def test_mdi_has_a_history_and_completes(look, fake):
     field.fill("G0 X10 Y20")
     field.press("Enter")
     wait_for(page, lambda: fake.received[-1].get("arguments") == {"text": "G0 X10 Y20"})
+    wait_for(page, lambda: field.input_value() == "")
     field.press("ArrowUp")
     assert field.input_value() == "G0 X10 Y20"
     field.fill("")
@@ -209,6 +313,13 @@ def test_offsets_are_shown_set_and_taught(look, fake):
     wait_for(page, lambda: commands(fake)[-1] == ("teach_zero_offset", {"index": 2, "axis": "Y", "value": 0}))
     page.click("[aria-label='Teach G56, all axes']")
     wait_for(page, lambda: commands(fake)[-1] == ("teach_zero_offset", {"index": 3, "value": 0}))
+
+
+def test_the_picker_takes_the_endings_of_the_server(look):
+    page = look(command=True)
+    until(
+        page, "document.querySelector('[aria-label=\\'Upload a program\\']').accept === '.nc,.ngc,.cnc,.tap,.mpf,.spf'"
+    )
 
 
 def commands(fake):

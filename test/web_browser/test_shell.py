@@ -156,9 +156,61 @@ def test_the_command_is_taken_and_given(look):
     first, second = look(), look()
     assert are_off(first)
     first.click("text=Take command")
-    first.wait_for_selector("text=You command")
+    first.wait_for_selector("text=You are the operator")
     assert not are_off(first)
     second.wait_for_selector("text=Ask for command")
     assert are_off(second)
     first.click("text=Give command")
-    first.wait_for_selector("text=Nobody commands")
+    first.wait_for_selector("text=No operator")
+
+
+def test_a_commissioner_takes_the_command_over(look, fake):
+    first, second = look(command=True), look()
+    asked = []
+    second.on("dialog", lambda dialog: (asked.append(dialog.message), dialog.accept()))
+    second.click("text=Take over")
+    second.wait_for_selector("text=You are the operator")
+    assert asked == ["Take the command from web? The jogs of that page end."]
+    assert {"type": "take_command", "force": True}.items() <= fake.received[-1].items()
+    first.wait_for_selector("text=Operator: web")
+
+
+def test_an_operator_cannot_take_the_command_over(look, fake):
+    fake.role = "operator"
+    look(command=True)
+    page = look()
+    page.wait_for_selector("text=Ask for command")
+    assert page.locator("text=Take over").is_hidden()
+
+
+def test_a_user_logs_out(look, fake):
+    fake.has_login = True
+    page = look()
+    page.click("text=Log out")
+    page.wait_for_selector("h2:text-is('Login')")
+    page.complaints.texts.clear()  # the browser logs each 401
+
+
+def test_without_users_a_lost_login_is_renewed_by_the_page(look, server, fake):
+    page = look()
+    assert page.locator("text=Log out").is_hidden()
+    fake.needs_welcome, fake.logged_in = True, False  # the page of the server gives a new cookie
+    page.evaluate("app.connection._socket.close()")
+    until(page, "app.store.link !== 'open'")
+    until(page, "app.store.link === 'open'")
+    page.wait_for_selector(".positions")
+    page.complaints.texts.clear()
+
+
+def test_alarms_are_bounded_and_the_newest_are_shown(look, server, fake):
+    page = look("alarms")
+
+    async def flood():
+        for i in range(1100):
+            await fake.raise_alarm(f"alarm {i}")
+
+    server.do(flood())
+    page.wait_for_selector(".alarm >> text=alarm 1099")
+    until(page, "app.store.alarms.length === 1000")
+    assert page.locator(".alarm").count() == 200
+    page.wait_for_selector("text=800 older")

@@ -37,12 +37,32 @@ def test_only_what_is_done_is_drawn(look, server, fake):
     page = look("watch", command=True)
     page.wait_for_selector("[data-ms]")
     page.evaluate("app.command('channel', 'start')")
-    page.click("text=Only what is done")
+    page.click("text=Executed part only")
     until(
         page,
         "document.querySelector('.backplot').scene._shown < 2990 && document.querySelector('.backplot').scene._shown > 0",
     )
     page.wait_for_selector("text=left · line")
+
+
+def test_an_older_path_does_not_overwrite_a_newer_one_and_an_error_leaves_none(look, server, fake):
+    page = look("watch")
+    page.wait_for_selector("text=2,999 segments")
+    fake.backplot_delays = [1.0, 0.0]
+    told = {"type": "program", "channel": "channel", "name": "bracket.nc"}
+    server.do(fake.tell(told))
+    page.wait_for_timeout(300)
+    fake.points = 100
+    server.do(fake.tell(told))
+    page.wait_for_selector("text=/^[0-9]+ segments/")
+    shown = page.inner_text(".backplot >> [role=status]")
+    page.wait_for_timeout(1200)
+    assert page.inner_text(".backplot >> [role=status]") == shown
+    fake.backplot_fails = True
+    server.do(fake.tell(told))
+    page.wait_for_selector("text=No program is loaded.")
+    assert page.evaluate("document.querySelector('.backplot').scene._shown") == 0
+    page.complaints.texts.clear()  # the browser logs the refusal 404
 
 
 def test_paths_are_broken_where_a_point_has_no_place(look):

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from browser_support import InThread, open_page, until
-from web_support import EXAMPLES, MILL
+from web_support import EXAMPLES, MILL, ROOT
 
 from cnc_ptp.web.access.access import Access
 from cnc_ptp.web.access.guard import Names
@@ -20,14 +20,24 @@ from cnc_ptp.web.server import Server
 
 @pytest.fixture
 def programs(tmp_path):
-    for name in ("bracket.nc", "cover.nc"):
+    for name in ("bracket.nc", "cover.nc", "turned_part.nc"):
         shutil.copy(Path(EXAMPLES) / name, tmp_path / name)
     return tmp_path
 
 
 @pytest.fixture
 def mill(browser, programs):
-    hub = Hub(lambda: offline_face(MILL), name="mill", folder=ProgramFolder(str(programs)), machine_file=MILL)
+    yield from pages_of(browser, programs, MILL)
+
+
+@pytest.fixture
+def lathe(browser, programs):
+    yield from pages_of(browser, programs, str(ROOT / "config" / "lathe.yaml"))
+
+
+def pages_of(browser, programs, machine):
+    """Opens pages of an offline machine; `hub` and `server` are those of the pages."""
+    hub = Hub(lambda: offline_face(machine), name="machine", folder=ProgramFolder(str(programs)), machine_file=machine)
     with InThread(Server(hub, Access(None), Names()).app) as server:
         pages = []
 
@@ -69,9 +79,7 @@ def test_a_program_is_loaded_run_overridden_held_and_reset(mill):
 
 def test_a_held_button_moves_the_axis_and_its_end_stops_it(mill):
     page = mill()
-    box = page.locator("[aria-label='Jog X +']").bounding_box()
-    page.mouse.move(box["x"] + 10, box["y"] + 10)
-    page.mouse.down()
+    press_jog(page)
     until(page, "app.store.units.x.set_position > 1")
     page.mouse.up()
     until(page, "app.store.units.x.state === 'Standstill'")
@@ -93,10 +101,15 @@ async def watch_velocity(hub, samples, seconds):
         await asyncio.sleep(0.005)
 
 
-def jog_until_it_moves(page):
+def press_jog(page):
+    until(page, "app.roundTrip.time < 100")  # it is long while a page is being drawn
     box = page.locator("[aria-label='Jog X +']").bounding_box()
     page.mouse.move(box["x"] + 10, box["y"] + 10)
     page.mouse.down()
+
+
+def jog_until_it_moves(page):
+    press_jog(page)
     until(page, "app.store.units.x.set_velocity > 10")
     page.wait_for_timeout(300)
 
@@ -230,3 +243,70 @@ def test_the_circle_test_draws_its_deviations(mill):
     page.wait_for_selector("text=Deviations are drawn 500 times as large.")
     radius = float(page.locator(".reading:has-text('Radius') output").inner_text())
     assert abs(radius - 5) < 0.05
+
+
+def test_a_program_waits_for_somebody_who_acknowledges_its_tool(mill, programs):
+    (programs / "tool.nc").write_text("%TOOL\nN10 M6\nN20 G0 X2\nN30 M30\n", encoding="utf-8")
+    page = mill()
+    load(page, "tool.nc")
+    page.evaluate("() => void app.command('plc', 'auto_acknowledge', { enabled: false })")
+    page.click("button.primary >> text=Start")
+    page.wait_for_selector(".handshakes >> text=M6")
+    page.click(".handshakes >> text=Acknowledge")
+    page.wait_for_selector(".handshakes li", state="detached")
+    until(page, "Math.abs(app.store.units.x.set_position - 2) < 1e-9 && !app.store.units.channel.active")
+
+
+def test_the_path_of_a_turned_part_is_seen_as_a_lathe(lathe):
+    page = lathe()
+    load(page, "turned_part.nc")
+    page.keyboard.press("Alt+Digit2")
+    page.wait_for_selector("[data-ms]")
+    assert page.input_value("[aria-label=View]") == "turning"
+    assert page.evaluate("document.querySelector('.backplot').scene._view") == "turning"
+
+
+def test_the_simulated_drive_and_a_service_channel_that_is_not_there(mill):
+    page = mill("commission")
+    page.click("[role=tab]:text-is('Drive')")
+    page.wait_for_selector("th:has-text('P-SIM')")
+    service = page.locator("section:has(h2:text-is('Service channel (SERCOS)'))")
+    service.locator("button:text-is('Read')").click()
+    page.wait_for_selector(".notice.error")
+    assert service.locator("output").inner_text() == ""
+
+
+def test_an_empty_position_is_not_zero(mill):
+    page = mill("commission")
+    page.click("[role=tab]:text-is('PTP test')")
+    page.fill("label:text-is('Position 2') + input", "")
+    page.click("button.primary >> text=Start")
+    page.wait_for_timeout(300)
+    page.wait_for_selector("text=Not started.")
+    assert page.evaluate("document.activeElement.required && document.activeElement.value === ''")
+    assert "move_absolute" not in [command for _, _, command in mill.hub.face.users]
+
+
+def test_the_emergency_stop_and_its_release_are_seen_on_other_pages(mill):
+    page, other = mill(), mill(command=False)
+    page.click("text=Emergency stop")
+    other.wait_for_selector(".pill >> text=Emergency stop")
+    page.on("dialog", lambda dialog: dialog.accept())
+    page.click("text=Release stop")
+    until(other, "!app.store.inEmergency")
+
+
+def test_the_target_of_an_axis_is_shown(mill):
+    page = mill("commission")
+    page.evaluate("() => void app.command('x', 'move_absolute', { target: 7.25 })")
+    page.wait_for_selector(".reading:has-text('Target position') >> text=7.2500")
+
+
+def test_a_jog_ends_when_a_commissioner_takes_the_command_over(mill):
+    page, other = mill(), mill(command=False)
+    jog_until_it_moves(page)
+    other.on("dialog", lambda dialog: dialog.accept())
+    other.click("text=Take over")
+    until(other, "app.store.holds")
+    until(other, "app.store.units.x.state === 'Standstill'")
+    page.mouse.up()

@@ -45,7 +45,7 @@ def channel_members(channel: ParameterSet, sets: Mapping[str, ParameterSet]) -> 
 def spindle_limits(parameters: ParameterSet, cycle_time: float) -> dict[str, Any]:
     spindle = spindle_view(parameters, cycle_time)
     speed = max(gear.max_speed for gear in spindle.gears.values()) / DEG_S_PER_RPM
-    return {"limits": {"speed": speed, "gears": [*spindle.gears]}}
+    return {"limits": {"speed": speed, "gears": [*spindle.gears], "override": spindle.max_override_percent}}
 
 
 def axis_limits(parameters: ParameterSet, cycle_time: float) -> dict[str, Any]:

@@ -6,6 +6,7 @@ import { Jogger } from "./jog.js";
 import { loginForm } from "./login.js";
 import { Notices } from "./notices.js";
 import { recordingBar } from "./recording_bar.js";
+import { RoundTrip } from "./round_trip.js";
 import { statusBar } from "./status_bar.js";
 import { Store } from "./store.js";
 
@@ -17,6 +18,7 @@ class App {
     this.store = new Store();
     this.connection = new Connection(this.store);
     this.notices = new Notices();
+    this.roundTrip = new RoundTrip(this.store, this.connection);
     this.jogger = new Jogger(this);
     this._mounted = null;
     this._turn = 0;
@@ -144,6 +146,7 @@ class App {
       location.hash = Object.keys(PAGES)[Number(digit[1]) - 1];
       event.preventDefault();
     } else if (event.key === "F1") {
+      this.jogger.stopAll();
       showHelp();
       event.preventDefault();
     } else if (event.key === "Escape") {

@@ -32,15 +32,29 @@ export class Connection {
       return;
     }
     if (response.status === 401) {
-      this.store.setLink("login");
+      await this._needsLogin();
       return;
     }
     if (!response.ok) {
       this._again();
       return;
     }
-    this.token = (await response.json()).token;
+    const { token, login } = await response.json();
+    this.token = token;
+    this.store.hasLogin = login;
     this._connect();
+  }
+
+  /** A server without users gives a new cookie with its page: a form that can never succeed is not shown. */
+  async _needsLogin() {
+    try {
+      await fetch("/", { cache: "reload" });
+      const again = await fetch("/api/session");
+      if (again.status !== 401) return this._again();
+    } catch {
+      return this._again();
+    }
+    return this.store.setLink("login");
   }
 
   _connect() {

@@ -25,10 +25,6 @@ export function say(element, text) {
   if (element.textContent !== shown) element.textContent = shown;
 }
 
-export function replace(element, ...children) {
-  element.replaceChildren(...children.flat().filter(Boolean));
-}
-
 let last = 0;
 export const newId = (stem = "f") => `${stem}${++last}`;
 
@@ -42,6 +38,12 @@ export function field(label, control, hint = "") {
     parts.push(text);
   }
   return h("div", { class: "field" }, parts);
+}
+
+/** The number in a field; null when it is empty or out of range, which the browser says beside it. */
+export function numberOf(input) {
+  input.required = true;
+  return input.reportValidity() ? input.valueAsNumber : null;
 }
 
 export function panel(title, ...children) {

@@ -14,8 +14,9 @@ const KEYS = [
 ];
 
 export function showHelp() {
+  if (document.querySelector("dialog.help")) return;
   const rows = KEYS.map(([key, text]) => h("tr", {}, h("th", { scope: "row" }, h("kbd", {}, key)), h("td", {}, text)));
-  const dialog = h("dialog", { "aria-label": "Keys" }, h("h2", {}, "Keys"), h("table", {}, h("tbody", {}, rows)), button("Close", () => dialog.close()));
+  const dialog = h("dialog", { "aria-label": "Keys", class: "help" }, h("h2", {}, "Keys"), h("table", {}, h("tbody", {}, rows)), button("Close", () => dialog.close()));
   dialog.addEventListener("close", () => dialog.remove());
   document.body.append(dialog);
   dialog.showModal();

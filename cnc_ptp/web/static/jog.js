@@ -1,4 +1,5 @@
 // Jogs: one message each 50 ms while a key or button is held. Every way in which a key may be lost ends them.
+import { LONGEST_FOR_JOGS } from "./round_trip.js";
 
 const PERIOD = 50; // ms
 const LATEST = 170; // ms between two messages; the axis ends its jog by itself after 200
@@ -11,6 +12,8 @@ export class Jogger {
     const stop = () => this.stopAll();
     for (const name of ["blur", "pagehide", "beforeunload", "freeze"]) window.addEventListener(name, stop);
     document.addEventListener("visibilitychange", stop);
+    // macOS tells of no key that comes up while Meta is held
+    for (const name of ["keydown", "keyup"]) document.addEventListener(name, (event) => event.key === "Meta" && this.stopAll(), true);
     app.store.on("link", stop);
     app.store.on("operator", () => app.store.holds || this.stopAll());
     app.store.on("jog_ended", (message) => this._ended(message));
@@ -28,6 +31,11 @@ export class Jogger {
     if (this._held.has(axis) || velocity === 0 || document.hidden) return;
     if (!store.holds) {
       notices.show("warning", "This page does not hold the command.", "Take the command first.");
+      return;
+    }
+    const { time } = this.app.roundTrip;
+    if (time > LONGEST_FOR_JOGS) {
+      notices.show("warning", slow(time), "Jog from a computer that is nearer to the machine, or where less runs.");
       return;
     }
     const jog = { velocity, sequence: 0, sent: performance.now(), timer: 0 };
@@ -94,4 +102,9 @@ export class Jogger {
       if (event.key === " " || event.key === "Enter") end();
     });
   }
+}
+
+function slow(time) {
+  if (time === Infinity) return "How long messages take is not known yet. There is no jog before.";
+  return `Messages to the server and back take ${Math.round(time)} ms, more than ${LONGEST_FOR_JOGS} ms. There is no jog then.`;
 }

@@ -2,14 +2,16 @@
 import { button, h, say, select } from "./dom.js";
 import { fixed } from "./format.js";
 import { showHelp } from "./help.js";
+import { LONGEST_FOR_JOGS } from "./round_trip.js";
 
 export function statusBar(app) {
-  return h("div", { class: "status" }, machine(app), command(app), alarms(app), look(), emergency(app));
+  return h("div", { class: "status" }, machine(app), command(app), alarms(app), look(), logout(app), emergency(app));
 }
 
 function machine(app) {
   const { store } = app;
   const [name, state, time] = [h("span", { class: "machine-name" }), h("span", { class: "pill", role: "status" }), h("span", { class: "machine-time number" })];
+  const way = h("span", { class: "round-trip", title: "Time of a message to the server and back" });
   const show = () => {
     const [kind, text] = machineState(store);
     state.dataset.kind = kind;
@@ -18,8 +20,12 @@ function machine(app) {
     say(time, store.machine ? `${fixed(store.time, 1)} s` : "");
   };
   for (const topic of ["state", "link", "gone", "hello"]) store.on(topic, show);
+  store.on("round_trip", (ms) => {
+    say(way, Number.isFinite(ms) ? `${Math.round(ms)} ms` : "");
+    way.dataset.kind = Number.isFinite(ms) && ms > LONGEST_FOR_JOGS ? "warn" : "";
+  });
   show();
-  return h("div", { class: "group" }, name, state, time);
+  return h("div", { class: "group" }, name, state, time, way);
 }
 
 /** Kind (colour) and word for the state of the whole machine. */
@@ -42,20 +48,24 @@ function command(app) {
   const who = h("span", { class: "operator" });
   const act = button("Take command", () => app.request(next()));
   const give = button("Give command", () => app.request("give_command"));
+  const force = button("Take over", () => {
+    if (window.confirm(`Take the command from ${store.operator.holder.user}? The jogs of that page end.`)) app.request("take_command", { force: true });
+  });
   const next = () => (store.operator.holder ? "ask_command" : "take_command");
   const show = () => {
     const { holder, asking } = store.operator;
-    say(who, store.holds ? (asking ? `${asking.user} asks for the command` : "You command") : holder ? `${holder.user} commands` : "Nobody commands");
+    say(who, store.holds ? (asking ? `${asking.user} asks for the command` : "You are the operator") : holder ? `Operator: ${holder.user}` : "No operator");
     say(act, holder ? "Ask for command" : "Take command");
     const offered = store.link === "open" && store.role !== "viewer" && Boolean(store.machine) && !store.machine.recording;
     act.hidden = !offered || store.holds;
     give.hidden = !offered || !store.holds;
+    force.hidden = !offered || !holder || store.holds || store.role !== "commissioner";
     who.hidden = !offered;
     who.classList.toggle("asked", Boolean(store.holds && asking));
   };
   for (const topic of ["operator", "hello", "link", "gone"]) store.on(topic, show);
   show();
-  return h("div", { class: "group command", "aria-live": "polite" }, who, act, give);
+  return h("div", { class: "group command", "aria-live": "polite" }, who, act, force, give);
 }
 
 function alarms(app) {
@@ -79,7 +89,20 @@ function look() {
   return h("div", { class: "group look" }, choice, button("?", showHelp, { "aria-label": "Keys and help (F1)" }));
 }
 
-/** Stops also for who does not hold the command, and always; its release is a button of its own, which asks. */
+/** Where users log in. The server ends the socket of a login that has ended; the page asks for the next login then. */
+function logout(app) {
+  const { store } = app;
+  const leave = button("Log out", () => app.attempt(app.connection.http("/api/logout", { method: "POST" })));
+  const show = () => {
+    leave.hidden = store.link !== "open" || !store.hasLogin;
+    leave.title = `Logged in as ${store.user} (${store.role})`;
+  };
+  for (const topic of ["hello", "link"]) store.on(topic, show);
+  show();
+  return leave;
+}
+
+/** Stops also for who does not hold the command, operator or not; its release is a button of its own, which asks. */
 function emergency(app) {
   const { store } = app;
   const stop = button("Emergency stop", () => {

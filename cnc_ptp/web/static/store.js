@@ -1,12 +1,13 @@
 // What the pages know of the machine; views are notified by topic.
 
-const KEPT_EVENTS = 500;
+const [KEPT_EVENTS, KEPT_ALARMS] = [500, 1000];
 
 export class Store {
   constructor() {
     this.link = "connecting"; // connecting, open, closed, login
     this.user = "";
     this.role = "viewer";
+    this.hasLogin = false; // users log in and out
     this.page = 0;
     this.machine = null;
     this.why = null;
@@ -64,18 +65,17 @@ export class Store {
   /** Whether this page holds the command. */
   get holds() {
     const holder = this.operator.holder;
-    return Boolean(holder) && (this.page ? holder.page === this.page : holder.user === this.user);
+    return Boolean(holder) && holder.page === this.page;
   }
 
   get inEmergency() {
-    const known = this.units.plc?.emergency_stop;
-    return known ?? Object.values(this.units).some((unit) => unit.error === 26168);
+    return Boolean(this.units.plc?.emergency_stop);
   }
 }
 
 const HANDLERS = {
   hello(store, message) {
-    Object.assign(store, { user: message.user, role: message.role, page: message.page || message.session || 0 });
+    Object.assign(store, { user: message.user, role: message.role, page: message.page || 0 });
     Object.assign(store, { machine: message.machine || null, why: message.why || null, units: {}, events: [] });
     if (message.operator) store.operator = message.operator;
     store.alarms = message.alarms || [];
@@ -95,10 +95,8 @@ const HANDLERS = {
     if (store.events.length > KEPT_EVENTS) store.events.shift();
     if (message.alarm === undefined) return;
     store.alarms.push(message);
+    while (store.alarms.length > KEPT_ALARMS) store.alarms.splice(Math.max(0, store.alarms.findIndex((alarm) => alarm.acknowledged)), 1);
     store.tell("alarms");
-  },
-  alarms(store, message) {
-    if (message.alarms) store.alarms = message.alarms;
   },
   acknowledged(store, message) {
     const numbers = new Set(message.alarms);

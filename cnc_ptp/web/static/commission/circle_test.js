@@ -1,5 +1,6 @@
 // Circle test: two axes go round by MDI; the deviation of the radius as a polar plot.
-import { button, field, h, panel, reading, say, select } from "../dom.js";
+import { button, field, h, numberOf, panel, reading, say, select } from "../dom.js";
+import { pause } from "../motion.js";
 import { short } from "../format.js";
 import { host, PlaneGraph } from "../scope/graphs.js";
 import { Capture } from "../scope/capture.js";
@@ -15,6 +16,7 @@ export function circleTest(app) {
   const planes = Object.keys(PLANES).filter((plane) => [...plane].every((axis) => names[axis]));
   if (planes.length === 0) return { element: h("p", { class: "muted" }, "The channel has no two of the axes X, Y, Z.") };
   const plane = select(planes);
+  const usual = store.unit(store.channel).turning ? "G18" : "G17"; // the plane is the one of the machine afterwards
   const radius = h("input", { type: "number", min: 0.1, step: "any", value: 20 });
   const feed = h("input", { type: "number", min: 1, step: "any", value: 2000 });
   const direction = select([["G3", "counter-clockwise (G3)"], ["G2", "clockwise (G2)"]]);
@@ -27,21 +29,25 @@ export function circleTest(app) {
   const capture = new Capture(app);
   let points = null;
 
+  let isEnded = false;
+
   async function start() {
-    const time = (2 * 2 * Math.PI * Number(radius.value) * 60) / Number(feed.value);
+    const [size, velocity] = [numberOf(radius), numberOf(feed)];
+    if (size === null || velocity === null) return null;
+    const time = (2 * 2 * Math.PI * size * 60) / velocity;
     if (time > LONGEST) return say(status, `Two turns take ${Math.round(time)} s, longer than ${LONGEST} s.`);
     const units = [...plane.value].map((axis) => names[axis]);
     capture.channels = [...units.map((unit) => ({ name: `${unit}.actual_position` })), { name: `${store.channel}.path_velocity` }];
     await capture.subscribe();
     const [word, centre] = PLANES[plane.value];
-    const turn = `${direction.value} ${centre}${radius.value} F${feed.value}`;
-    const text = `${word} G91 G162\n${turn}\n${turn}\nG90`.replace(" G162", "");
+    const turn = `${direction.value} ${centre}${size} F${velocity}`; // a full circle: no target, so G90 or G91 does not matter
+    const text = `${word}\n${turn}\n${turn}\n${usual}`;
     if (!(await app.command(store.channel, "mdi", { text }))) return null;
     say(status, "Measuring …");
-    await wait(300);
-    while (store.state(store.channel).active) await wait(100);
-    await wait(200);
-    evaluate();
+    await pause(300);
+    while (!isEnded && store.state(store.channel).active) await pause(100);
+    await pause(200);
+    if (!isEnded) evaluate();
     return null;
   }
 
@@ -71,7 +77,7 @@ export function circleTest(app) {
     return say(status, `Deviations are drawn ${factor.value} times as large.`);
   }
   factor.addEventListener("change", show);
-  const offline = simulated(app, () => ({ plane: plane.value === "XZ" ? "ZX" : plane.value, radius: Number(radius.value), feed: Number(feed.value) }));
+  const offline = simulated(app, () => ({ plane: plane.value === "XZ" ? "ZX" : plane.value, radius: numberOf(radius), feed: numberOf(feed) }));
   const element = h(
     "div", { class: "cards" },
     panel("Circle test", h("fieldset", { class: "commands" }, h("div", { class: "row end" }, field("Plane", plane), field("Direction", direction), field("Radius in mm", radius), field("Feed in mm/min", feed), button("Start", start, { class: "primary" }))), field("Deviations drawn so many times as large", factor), status, list),
@@ -81,6 +87,7 @@ export function circleTest(app) {
   return {
     element,
     end() {
+      isEnded = true;
       offline.end();
       capture.end();
       graph.end();
@@ -99,7 +106,10 @@ function simulated(app, options) {
     say(report, message.output || "");
     report.hidden = !message.output;
   });
-  const start = h("fieldset", { class: "commands", dataset: { role: "commissioner" } }, button("Simulate", () => task.begin("circle", options())));
+  const start = h("fieldset", { class: "commands", dataset: { role: "commissioner" } }, button("Simulate", () => {
+    const given = options();
+    if (given.radius !== null && given.feed !== null) task.begin("circle", given);
+  }));
   return {
     element: panel("On a simulation", start, task.element, picture, report),
     end() {
@@ -108,5 +118,3 @@ function simulated(app, options) {
     },
   };
 }
-
-const wait = (ms) => new Promise((resolve) => setTimeout(resolve, ms));

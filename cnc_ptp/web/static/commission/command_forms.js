@@ -58,6 +58,6 @@ function rows(name, text) {
   try {
     return JSON.parse(text);
   } catch {
-    throw new Error(`${words(name)} is no list, such as [[0, 0], [90, 25]].`);
+    throw new Error(`${words(name)} is not a list such as [[0, 0], [90, 25]].`);
   }
 }

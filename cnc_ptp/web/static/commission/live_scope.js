@@ -8,12 +8,14 @@ export function liveScope(app, signals, { window = 5, height = 190 } = {}) {
   capture.window = window;
   capture.channels = signals.map(([name, graph]) => ({ name, graph }));
   const picture = new Picture(app, capture, { height, extras: false });
-  capture.subscribe().then(() => picture.rebuild());
+  let isEnded = false;
+  capture.subscribe().then(() => isEnded || picture.rebuild());
   return {
     capture,
     picture,
     element: picture.element,
     end() {
+      isEnded = true;
       picture.end();
       capture.end();
     },

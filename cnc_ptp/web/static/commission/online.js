@@ -24,7 +24,7 @@ export function onlineAxis(app, unit) {
   const rows = [
     show("Set position", length, (state) => fixed(state.set_position, 4)),
     show("Actual position", length, (state) => fixed(state.actual_position, 4)),
-    show("Target position", length, (state) => fixed(state.target ?? state.target_position, 4)),
+    show("Target position", length, (state) => fixed(state.target, 4)),
     show("Distance to go", length, (state) => fixed(state.distance_to_go, 4)),
     show("Lag (following error)", length, (state) => fixed(state.following_error, 5)),
     show("Lag, smallest", length, () => fixed(lag.min, 5)),
@@ -53,7 +53,7 @@ export function onlineAxis(app, unit) {
   const commands = h("fieldset", { class: "commands" }, h("div", { class: "row" }, button("Enable", act("power", { enabled: true })), button("Disable", act("power", { enabled: false })), button("Reset", act("reset")), button("Home", act("home"))));
   const element = h(
     "div", { class: "cards" },
-    panel(`Axis ${unit.name}`, list, h("div", { class: "row" }, button("Lag: begin anew", resetLag), button("Halt", act("halt"))), commands),
+    panel(`Axis ${unit.name}`, list, h("div", { class: "row" }, button("Reset lag", resetLag), button("Halt", act("halt"))), commands),
     h("div", { class: "stack" }, bits.map((one) => one.element)),
   );
   function update() {

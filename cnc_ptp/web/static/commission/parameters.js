@@ -45,7 +45,7 @@ export function browser(app, unit, wanted, title) {
 
 function line(app, unit, row) {
   const known = (value) => (value === null || value === undefined ? "" : typeof value === "number" ? short(value, 10) : String(value));
-  const range = row.range ? row.range : row.choices?.length ? row.choices.join(", ") : row.min !== undefined && row.min !== null ? `${known(row.min)} … ${known(row.max)}` : "";
+  const range = row.range ? row.range : row.min !== undefined && row.min !== null ? `${known(row.min)} … ${known(row.max)}` : "";
   return h(
     "tr", {}, h("th", { scope: "row" }, row.id, h("br"), h("small", { class: "muted" }, row.name)), h("td", { class: "number" }, value(app, unit, row, known)), h("td", {}, row.unit || ""), h("td", { class: "number" }, range),
     h("td", { class: "number" }, known(row.default)), h("td", {}, CHANGES[row.change] || CHANGES.start), h("td", {}, row.text || ""),

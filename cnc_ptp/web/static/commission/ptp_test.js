@@ -1,8 +1,7 @@
 // PTP test: an axis goes to and fro between two positions, with the scope beside.
-import { button, field, h, panel, press, say, toggle } from "../dom.js";
+import { button, field, h, numberOf, panel, press, say, toggle } from "../dom.js";
+import { arrived } from "../motion.js";
 import { liveScope } from "./live_scope.js";
-
-const PAUSE = 300; // ms at each end
 
 export function ptpTest(app, unit) {
   const { store } = app;
@@ -12,20 +11,24 @@ export function ptpTest(app, unit) {
   };
   const inputs = Object.fromEntries(Object.entries(numbers).map(([name, [, value]]) => [name, h("input", { type: "number", step: "any", value })]));
   const override = h("input", { type: "number", min: 0, max: unit.limits?.override || 200, step: 1, value: 100 });
-  override.addEventListener("change", () => app.command(unit.name, "set_override", { percent: Number(override.value) }));
+  override.addEventListener("change", () => {
+    const percent = numberOf(override);
+    if (percent !== null) app.command(unit.name, "set_override", { percent });
+  });
   const status = h("p", { class: "muted", role: "status" }, "Not started.");
   const repeat = toggle("Repeat", (on) => press(repeat, on));
   const scope = liveScope(app, [[`${unit.name}.set_position`, 1], [`${unit.name}.actual_position`, 1], [`${unit.name}.set_velocity`, 2], [`${unit.name}.following_error`, 3]]);
   let active = false;
 
   async function start() {
-    if (active) return;
+    const ends = [numberOf(inputs.first), numberOf(inputs.second)];
+    if (active || ends.includes(null)) return;
     active = true;
     let strokes = 0;
     const repeats = () => repeat.getAttribute("aria-pressed") === "true";
     do {
-      for (const name of ["first", "second"]) {
-        if (!active || !(await stroke(Number(inputs[name].value)))) return finish();
+      for (const target of ends) {
+        if (!active || !(await stroke(target))) return finish();
         strokes += 1;
         say(status, `${strokes} strokes`);
       }
@@ -38,10 +41,7 @@ export function ptpTest(app, unit) {
     const given = ["velocity", "acceleration", "deceleration", "jerk"].filter((name) => inputs[name].value !== "");
     const args = { target, ...Object.fromEntries(given.map((name) => [name, Number(inputs[name].value)])) };
     if (!(await app.command(unit.name, "move_absolute", args))) return false;
-    await pause(PAUSE);
-    while (active && /Motion|Stopping/.test(store.state(unit.name).state || "")) await pause(50);
-    await pause(PAUSE);
-    return store.state(unit.name).state === "Standstill";
+    return arrived(store, unit.name, () => active);
   }
 
   function finish() {
@@ -70,4 +70,3 @@ export function ptpTest(app, unit) {
 }
 
 const clamp = (value, low, high) => Math.min(Math.max(value, low ?? -Infinity), high ?? Infinity);
-const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));

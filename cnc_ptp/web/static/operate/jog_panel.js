@@ -1,5 +1,6 @@
 // Jog of the axes: buttons that are held, and keys when they are switched on.
 import { button, field, h, panel, press, toggle } from "../dom.js";
+import { homeAll } from "./homing.js";
 
 const KEYS = { ArrowRight: [0, 1], ArrowLeft: [0, -1], ArrowUp: [1, 1], ArrowDown: [1, -1], PageUp: [2, 1], PageDown: [2, -1] };
 const CONTROLS = "input, select, textarea, [role=listbox], [role=tab]";
@@ -32,9 +33,8 @@ export function jogPanel(app) {
   const power = (enabled) => async () => {
     for (const { name } of axes) await app.command(name, "power", { enabled });
   };
-  const home = async () => {
-    for (const { name } of axes) await app.command(name, "home");
-  };
+  let isShown = true;
+  const home = () => homeAll(app, () => isShown);
   const element = panel(
     "Jog",
     h("fieldset", { class: "commands" },
@@ -43,6 +43,7 @@ export function jogPanel(app) {
     ),
   );
   const ends = [jogKeys(jogger, axes, velocity, () => on(keysOn)), jogger.onChange((axis, now) => mark(buttons.get(axis), now))];
+  ends.push(() => (isShown = false));
   return { element, end: () => ends.forEach((end) => end()) };
 }
 
@@ -51,14 +52,19 @@ function mark(held, velocity) {
 }
 
 function jogKeys(jogger, axes, velocity, isOn) {
+  const rapid = new Set(); // axes that Shift has made rapid
   function down(event) {
     const key = KEYS[event.key];
-    if (!key || !isOn() || event.ctrlKey || event.altKey || event.metaKey || event.target.closest?.(CONTROLS)) return;
+    if (!key || !isOn() || document.querySelector("dialog[open]") || event.ctrlKey || event.altKey || event.metaKey || event.target.closest?.(CONTROLS)) return;
     event.preventDefault();
     const axis = axes[key[0]];
-    if (axis && !event.repeat) jogger.start(axis.name, velocity(axis, key[1], event.shiftKey)());
+    if (!axis || event.repeat) return;
+    if (event.shiftKey) rapid.add(axis.name);
+    else rapid.delete(axis.name);
+    jogger.start(axis.name, velocity(axis, key[1], event.shiftKey)());
   }
   function up(event) {
+    if (event.key === "Shift") rapid.forEach((name) => jogger.stop(name));
     const key = KEYS[event.key];
     if (key && axes[key[0]]) jogger.stop(axes[key[0]].name);
   }

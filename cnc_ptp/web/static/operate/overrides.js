@@ -9,7 +9,7 @@ export function overrides(app) {
   const { store } = app;
   const rows = [
     ...store.of("channel").map((unit) => row(app, unit.name, "Feed", unit.limits?.override || 200)),
-    ...store.of("spindle").map((unit) => row(app, unit.name, `Spindle ${unit.name}`, 200)),
+    ...store.of("spindle").map((unit) => row(app, unit.name, `Spindle ${unit.name}`, unit.limits?.override || 200)),
     ...store.of("axis").map((unit) => row(app, unit.name, `PTP ${unit.name.toUpperCase()}`, unit.limits?.override || 200)),
   ];
   const main = rows.filter((one) => !one.ofAxis(store));

@@ -16,7 +16,7 @@ export function programPanel(app) {
   });
   press(follow, true);
   const names = select([["", "Load a program …"]], { "aria-label": "Load a program" });
-  const file = h("input", { type: "file", "aria-label": "Upload a program", accept: ".nc,.ngc,.mpf,.txt,text/plain", class: "visually-hidden", tabIndex: -1 });
+  const file = h("input", { type: "file", "aria-label": "Upload a program", class: "visually-hidden", tabIndex: -1 });
   const find = h("input", { type: "search", placeholder: "Find, or a line number", "aria-label": "Find in the program" });
   const title = h("span", { class: "program-name" });
   const active = h("code", { class: "active-block" });
@@ -29,7 +29,8 @@ export function programPanel(app) {
   element.classList.add("program-panel");
 
   async function fill() {
-    const programs = await listPrograms(app);
+    const { programs, endings } = await listPrograms(app);
+    file.accept = endings.join(",");
     names.replaceChildren(h("option", { value: "" }, "Load a program …"), ...programs.map(({ name }) => h("option", { value: name }, name)));
   }
   names.addEventListener("focus", fill, { once: true });

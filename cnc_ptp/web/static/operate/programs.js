@@ -2,14 +2,16 @@
 
 const EXISTS = 26257; // the number of a name that is taken
 
+/** `programs` with name and size, and the `endings` of names that are taken. */
 export async function listPrograms(app) {
   const answer = await app.attempt(app.connection.http("/api/programs"));
-  return answer?.programs || [];
+  return { programs: answer?.programs || [], endings: answer?.endings || [] };
 }
 
-/** The text of a program; null after a refusal, which is shown. */
+/** The text of a program as the channel has loaded it; null after a refusal, which is shown. */
 export function readProgram(app, name) {
-  return app.attempt(app.connection.http(`/api/programs/${encodeURIComponent(name)}`, { as: "text" }));
+  const channel = encodeURIComponent(app.store.channel);
+  return app.attempt(app.connection.http(`/api/programs/${encodeURIComponent(name)}?channel=${channel}`, { as: "text" }));
 }
 
 export async function loadProgram(app, name) {
@@ -47,16 +49,18 @@ export function takeDrops(element, take) {
   });
 }
 
-/** Follows the program of the channel: `show(text)` for each new one; returns what ends that. */
+/** Follows the program of the channel: `show(text)` for each that is loaded; returns what ends that. */
 export function followProgram(app, show) {
   const { store } = app;
   let shown = null;
+  let turn = 0; // an earlier answer does not overwrite a later one
   const look = async () => {
     const name = programName(store);
     if (!name || name === shown) return;
     shown = name;
+    const mine = ++turn;
     const text = await readProgram(app, name);
-    if (text !== null && shown === name) show(text, name);
+    if (mine === turn) show(text ?? "");
   };
   const again = () => {
     shown = null;
@@ -64,7 +68,10 @@ export function followProgram(app, show) {
   };
   const ends = [store.on("program", again), store.on("state", look)];
   look();
-  return () => ends.forEach((end) => end());
+  return () => {
+    turn += 1;
+    ends.forEach((end) => end());
+  };
 }
 
 export function programName(store) {

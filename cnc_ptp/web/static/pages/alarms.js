@@ -5,7 +5,7 @@ import { alarmList } from "../watch/alarm_list.js";
 
 export function mount(root, app) {
   const open = alarmList(app, { title: "Open alarms" });
-  const history = alarmList(app, { title: "Acknowledged", history: true, most: 200 });
+  const history = alarmList(app, { title: "Acknowledged", history: true });
   const list = events(app);
   root.append(open.element, history.element, list.element);
   return { unmount: () => [open, history, list].forEach((view) => view.end()) };

@@ -10,7 +10,7 @@ export function mount(root, app) {
   const folder = panel("Program folder", h("p", { class: "muted" }, "Drop a file here to upload and load it."), h("fieldset", { class: "commands" }, list));
 
   async function fill() {
-    const programs = await listPrograms(app);
+    const { programs } = await listPrograms(app);
     list.replaceChildren(...programs.map(({ name, size }) => h("li", {}, h("span", {}, name, h("small", { class: "muted" }, ` ${bytes(size)}`)), button("Load", () => loadProgram(app, name), { class: "small", "aria-label": `Load ${name}` }))));
     if (programs.length === 0) list.append(h("li", {}, "No programs."));
   }

@@ -48,7 +48,7 @@ export class Capture {
       return;
     }
     if (this.isRecording) return;
-    const answer = await this.app.request("scope", { signals: this._names });
+    const answer = await this.app.request("scope", { signals: this._names, bits: 64 });
     if (!answer || turn !== this._turn) return;
     this._stream = answer.stream;
   }

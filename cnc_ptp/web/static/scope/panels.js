@@ -31,7 +31,7 @@ export function runPanel(app, capture, picture) {
   };
   const element = panel(
     "Scope", h("div", { class: "row end" }, field("Window", length), freeze, unzoom), status,
-    h("div", { class: "row" }, button("Export CSV", () => download("scope.csv", csv(capture))), button("MCAP snapshot", snapshot)),
+    h("div", { class: "row" }, button("Export CSV", () => download("scope.csv", csv(capture))), !capture.isRecording && app.store.role !== "viewer" && button("MCAP snapshot", snapshot)),
   );
   return { element, refresh: () => (length.value = String(capture.window)) };
 }

@@ -2,7 +2,7 @@
 
 const FIELDS = 5; // uint32 of a header
 
-/** A binary frame of /ws: stream, first cycle, and a column of float32 for each signal. Throws Error. */
+/** A binary frame of /ws: stream, first cycle, and a column of float32 or float64 for each signal. Throws Error. */
 export function readFrame(buffer) {
   if (buffer.byteLength < FIELDS * 4) throw new Error("a frame of the scope is too short");
   const [stream, low, high, signals, count] = new Uint32Array(buffer, 0, FIELDS);
@@ -16,15 +16,17 @@ export function readRecorded(buffer) {
 }
 
 function columnsOf(buffer, from, signals, count) {
-  if (buffer.byteLength !== from + 4 * signals * count) throw new Error("a frame of the scope has another length than it says");
-  return Array.from({ length: signals }, (_, i) => new Float32Array(buffer, from + 4 * i * count, count));
+  const size = count === 0 || signals === 0 ? 4 : (buffer.byteLength - from) / (signals * count);
+  if (size !== 4 && size !== 8) throw new Error("a frame of the scope has another length than it says");
+  const values = new (size === 8 ? Float64Array : Float32Array)(buffer.slice(from));
+  return Array.from({ length: signals }, (_, i) => values.subarray(i * count, (i + 1) * count));
 }
 
 /** The newest samples of several signals; all have the same cycles, one after the other. */
 export class Ring {
   constructor(signals, capacity) {
     this.capacity = capacity;
-    this.columns = Array.from({ length: signals }, () => new Float32Array(capacity));
+    this.columns = Array.from({ length: signals }, () => new Float64Array(capacity)); // integers and exports are exact
     this.clear();
   }
 
@@ -48,7 +50,7 @@ export class Ring {
       this.end = cycle;
     } else if (gap > 0) {
       this.lost += gap;
-      const nothing = new Float32Array(gap).fill(NaN);
+      const nothing = new Float64Array(gap).fill(NaN);
       this._write(columns.map(() => nothing), gap);
     }
     this._write(columns, count);
@@ -69,7 +71,7 @@ export class Ring {
   /** The samples of a signal from a cycle up to another one. */
   slice(signal, from, to) {
     const [first, behind] = [Math.max(from, this.begin), Math.min(to, this.end)];
-    const found = new Float32Array(Math.max(0, behind - first));
+    const found = new Float64Array(Math.max(0, behind - first));
     const column = this.columns[signal];
     for (let i = 0; i < found.length; i++) found[i] = column[(first + i) % this.capacity];
     return found;
@@ -95,7 +97,7 @@ export function drawn(ring, signals, from, to, pixels) {
     return [cycles, ...signals.map((signal) => ring.slice(signal, first, behind))];
   }
   const cycles = new Float64Array(2 * pixels);
-  const columns = signals.map(() => new Float32Array(2 * pixels));
+  const columns = signals.map(() => new Float64Array(2 * pixels));
   for (let pixel = 0; pixel < pixels; pixel++) {
     const [begin, end] = [first + Math.floor((pixel * count) / pixels), first + Math.floor(((pixel + 1) * count) / pixels)];
     cycles[2 * pixel] = begin;

@@ -2,8 +2,10 @@
 import { button, h, panel } from "../dom.js";
 import { fixed } from "../format.js";
 
+const SHOWN = 200; // of so many alarms
+
 /** `most`: how many are shown, the newest first; `history`: acknowledged ones too. */
-export function alarmList(app, { most = Infinity, history = false, title = "Alarms" } = {}) {
+export function alarmList(app, { most = SHOWN, history = false, title = "Alarms" } = {}) {
   const { store } = app;
   const list = h("div", { class: "alarm-list" });
   const all = button("Acknowledge all", () => app.request("acknowledge"));
@@ -13,7 +15,8 @@ export function alarmList(app, { most = Infinity, history = false, title = "Alar
     const shown = wanted.slice(-most).reverse();
     all.hidden = shown.length === 0 || store.role === "viewer";
     list.replaceChildren(...(shown.length ? shown.map((alarm) => card(app, alarm)) : [h("p", { class: "muted" }, history ? "None yet." : "No alarms.")]));
-    if (wanted.length > shown.length) list.append(h("a", { href: "#alarms" }, `${wanted.length - shown.length} more`));
+    const more = `${wanted.length - shown.length} older`;
+    if (wanted.length > shown.length) list.append(most < SHOWN ? h("a", { href: "#alarms" }, more) : h("p", { class: "muted" }, more));
   }
   const end = store.on("alarms", show);
   show();

@@ -17,7 +17,7 @@ export function backplot(app) {
   const status = h("p", { class: "muted", role: "status" }, "No path yet.");
   const by = select([["feed", "Colour: feed"], ["block", "Colour: block"]], { "aria-label": "Colour of the path" });
   const views = select([["iso", "View: oblique"], ["top", "View: top (XY)"], ["front", "View: front (XZ)"], ["side", "View: side (YZ)"], ["turning", "View: turning (ZX)"]], { "aria-label": "View" });
-  const done = toggle("Only what is done", (on) => (press(done, on), update()));
+  const done = toggle("Executed part only", (on) => (press(done, on), update()));
   const measured = toggle("Measured path", showMeasured);
   measured.hidden = !store.machine.recording;
   const element = panel("Backplot", h("div", { class: "row" }, views, by, done, measured, button("Fit", () => scene?.look(views.value))), host, legend, status);
@@ -30,17 +30,24 @@ export function backplot(app) {
     return { element };
   }
 
+  let loading = 0; // a later answer is not overwritten by an earlier one
+
   async function load() {
+    const number = ++loading;
     const begin = performance.now();
     say(status, "The server draws the program …");
-    let bytes;
+    let drawn;
     try {
-      bytes = await app.connection.http(`/api/backplot?channel=${encodeURIComponent(store.channel)}`, { as: "bytes" });
-      path = readPath(bytes);
+      const bytes = await app.connection.http(`/api/backplot?channel=${encodeURIComponent(store.channel)}`, { as: "bytes" });
+      drawn = readPath(bytes);
     } catch (error) {
+      if (number !== loading) return;
+      clear();
       say(status, error.number === NO_PROGRAM ? "No program is loaded." : error.message);
       return;
     }
+    if (number !== loading) return;
+    path = drawn;
     const shape = geometry(path);
     pairs = shape.pairs;
     scene.setPath(shape.positions, pairs, colour(), shape.box);
@@ -48,6 +55,14 @@ export function backplot(app) {
     scene.drawNow();
     element.dataset.ms = Math.round(performance.now() - begin);
     say(status, `${path.flags & CUT_OFF ? "Not to its end: " : ""}${(pairs.length / 2).toLocaleString("en")} segments · ${[0, 1, 2].map((k) => `${"XYZ"[k]} ${fixed(shape.box.min[k], 1)} … ${fixed(shape.box.max[k], 1)}`).join(" · ")} mm`);
+  }
+
+  /** No path: an old one would be taken for that of the program. */
+  function clear() {
+    [path, pairs] = [null, null];
+    scene.setPath(new Float32Array(0), new Uint32Array(0), new Uint8Array(0), { min: [0, 0, 0], max: [1, 1, 1] });
+    legend.replaceChildren();
+    delete element.dataset.ms;
   }
 
   function colour() {
@@ -94,7 +109,7 @@ export function backplot(app) {
   });
   const theme = () => scene.setTheme();
   window.addEventListener("theme", theme);
-  const ends = [store.on("state", update), store.on("program", load), () => window.removeEventListener("theme", theme), () => scene.end()];
+  const ends = [store.on("state", update), store.on("program", load), () => window.removeEventListener("theme", theme), () => (loading += 1), () => scene.end()];
   element.scene = scene;
   load();
   update();
