@@ -148,7 +148,8 @@ def test_a_program_that_cannot_be_drawn():
         os.kill(drawing, signal.SIGKILL)
         answer = await here.client.get("/api/backplot")
         text = f"backplot of {path}: the process that draws has ended; ask again"
-        assert (await answer.json())["text"] == text
+        error = await answer.json()
+        assert (error["number"], error["text"]) == (26253, text)
         assert (await here.client.get("/api/backplot")).status == 200
 
     run(story)

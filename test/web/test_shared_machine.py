@@ -144,7 +144,8 @@ def test_too_many_pages_of_one_user(users, monkeypatch):
         await page_of(here, "vera")
         answer = await here.client.get("/ws")
         text = "the limit of open pages of vera is reached, 1; nothing was done; close one"
-        assert (answer.status, (await answer.json())["text"]) == (503, text)
+        error = await answer.json()
+        assert (answer.status, error["number"], error["text"]) == (503, 26245, text)
         await page_of(here, "otto")
 
     run(story, users=users)

@@ -7,7 +7,7 @@ import pytest
 
 sys.path[:0] = [str(Path(__file__).parent)]
 
-from browser_support import InThread, chromium, open_page, why_no_browser  # noqa: E402
+from web_browser_support import InThread, chromium, open_page, why_no_browser  # noqa: E402
 
 
 @pytest.fixture(scope="module")

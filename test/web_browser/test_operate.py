@@ -3,7 +3,7 @@
 from itertools import pairwise
 
 import pytest
-from browser_support import until
+from web_browser_support import until
 
 LOST = {
     "pointerup": "() => 0",

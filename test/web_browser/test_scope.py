@@ -3,7 +3,7 @@
 import math
 from pathlib import Path
 
-from browser_support import until
+from web_browser_support import until
 
 
 def module(page, name, body):

@@ -1,7 +1,7 @@
 """The shell of the pages: all of them open, keys, themes, a broken connection, texts that are no markup."""
 
 import pytest
-from browser_support import HERE, PHONE, until
+from web_browser_support import HERE, PHONE, until
 from fake_machine import NASTY
 
 PAGES = ["operate", "watch", "scope", "commission", "alarms", "program"]

@@ -1,6 +1,6 @@
 """Watch and recordings: backplot, progress, time slider."""
 
-from browser_support import InThread, open_page, until
+from web_browser_support import InThread, open_page, until
 from fake_machine import Fake
 
 SEGMENTS = 150_000

@@ -7,7 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from browser_support import InThread, open_page, until
+from web_browser_support import InThread, open_page, until
 from web_support import EXAMPLES, MILL, ROOT
 
 from cnc_ptp.web.access.access import Access
