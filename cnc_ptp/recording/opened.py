@@ -22,7 +22,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.recording.mcap_file import METADATA
 from cnc_ptp.recording.mcap_index import ChunkPlace, McapIndex
 from cnc_ptp.recording.message_fields import Column, MessageFields
-from cnc_ptp.recording.origin import require_known_format
+from cnc_ptp.recording.origin import notes_of
 from cnc_ptp.recording.parts import files_of
 from cnc_ptp.recording.selection import NOT_RECORDED, asked_time, nearest
 from cnc_ptp.wire.schemas import full_name
@@ -93,12 +93,8 @@ class OpenRecording:
     def __init__(self, path: str | Path) -> None:
         self.path = Path(path)
         self._files = [McapIndex(file) for file in files_of(self.path)]
-        self.metadata: dict[str, str] = {}
-        for file in self._files:
-            for metadata in file.metadata:
-                if metadata.name == METADATA:
-                    require_known_format(self.path, metadata.metadata)
-                    self.metadata = {**metadata.metadata, **self.metadata}
+        records = chain.from_iterable(file.metadata for file in self._files)
+        self.metadata = notes_of(self.path, (record.metadata for record in records if record.name == METADATA))
         first = min((chunk.first_ns for file in self._files for chunk in file.chunks), default=0)
         self.start_ns = int(self.metadata.get("start_ns", first))
         """Log time of time 0."""

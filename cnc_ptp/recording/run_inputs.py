@@ -23,7 +23,7 @@ from cnc_ptp.protocol.blocks import CommandRecord
 from cnc_ptp.recording.bag import FILE
 from cnc_ptp.recording.mcap_file import METADATA
 from cnc_ptp.recording.mcap_index import ChunkPlace, McapIndex
-from cnc_ptp.recording.origin import require_computable, require_known_format
+from cnc_ptp.recording.origin import notes_of, require_computable
 from cnc_ptp.recording.parts import files_of
 from cnc_ptp.recording.reader import COMMAND, STATE_TYPES, TICK, RawMessage, command_record
 from cnc_ptp.recording.writer import CHECKPOINT, CHECKPOINT_TEXT, MACHINE_FILE, PLC_FILE
@@ -58,11 +58,8 @@ class RunInputs:
         self.path = Path(path)
         self._parts = [_Part(file) for file in files_of(self.path)]
         self._beside: list[_Part] = []
-        values: dict[str, str] = {}
-        for metadata in chain.from_iterable(part.index.metadata for part in self._parts):
-            if metadata.name == METADATA:
-                require_known_format(self.path, metadata.metadata)
-                values |= metadata.metadata
+        records = chain.from_iterable(part.index.metadata for part in self._parts)
+        values = notes_of(self.path, (record.metadata for record in records if record.name == METADATA))
         require_computable(self.path, values)
         self.start_ns = int(values.get("start_ns", "0"))
         self.cycle_time_ns = int(values.get("cycle_time_ns", "1000000"))

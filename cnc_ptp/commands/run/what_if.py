@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import chain, islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -61,8 +62,10 @@ def compute(run: WhatIf, recorded: RunInputs, path: str) -> list[str]:
         notes[WITHOUT] = (
             f"it is what became of {recorded.path.name} from cycle {run.begin} on, what was before is there"
         )
+    blocks = run.run()
+    first = [*islice(blocks, 1)]  # what refuses the change does it now, before a file is overwritten
     with Recording(path, run.machine_text, recorded.start_ns, recorded.cycle_time_ns, notes=notes) as recording:
-        for outputs in run.run():
+        for outputs in chain(first, blocks):
             write(recording, outputs)
             for record in [record for output in outputs.values() for record in output.records if not record.accepted]:
                 if (record.cycle, record.target, record.command) not in known:
