@@ -26,6 +26,8 @@ from cnc_ptp.recording.selection import NOT_RECORDED
 from cnc_ptp.recording.writer import CHECKPOINT
 
 OTHER_RESULT = 26210
+NO_CHECKPOINT = 26223
+SHORTER = "no file was written, choose a shorter time"
 
 
 class Stored(NamedTuple):
@@ -52,6 +54,11 @@ def store_checkpoints(recorded: RunInputs, seconds: float) -> Stored:
             checkpoints.watch(offline)
             if file.count > count:
                 require_same(states, machine, offline.parts[1])
+        if not (file.count or checkpoints.fault):
+            reason = (
+                f"recording {recorded.path}: has no checkpoint within {recorded.end * machine.cycle_time_us * 1e-6:g} s"
+            )
+            raise CncError(NO_CHECKPOINT, f"{reason} when they are {seconds:g} s apart", SHORTER)
     return Stored(path, file.count, checkpoints.fault)
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 import cnc_ptp
 from cnc_ptp import KERNEL
 from cnc_ptp.errors import CncError
+from cnc_ptp.recording.mcap_file import MISSING
 
 FROM_THE_FUTURE = 26016
 FOREIGN = 26017
@@ -75,10 +76,14 @@ def notes_of(path: Path, records: Iterable[Mapping[str, str]]) -> dict[str, str]
     """
     notes: dict[str, str] = {}
     parts: list[str] = []
+    missing: dict[str, None] = {}
     for record in records:
         require_known_format(path, record)
         parts += [record[PART]] if PART in record else []
+        missing |= dict.fromkeys([record[MISSING]] if MISSING in record else [])
         notes = {**record, **notes}
+    if missing:
+        notes[MISSING] = "; ".join(missing)
     lacking = next((number for number, part in enumerate(parts) if part != str(number)), None)
     if lacking is not None:
         notes.setdefault(WITHOUT, f"part {lacking} of the run is not there")

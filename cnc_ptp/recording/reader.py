@@ -333,7 +333,7 @@ class Reader:
 
     def finish(self) -> Recorded:
         recorded = self.recorded
-        recorded.missing = recorded.metadata.get(MISSING, "; ".join(self._missing))
+        recorded.missing = "; ".join(filter(None, [recorded.metadata.get(MISSING), *self._missing]))
         recorded.complete = not recorded.missing
         recorded.machine_yaml = recorded.attachments.pop(MACHINE_FILE, "")
         recorded.topics = {topic: info for topic, info in self._by_name.items() if info.count}

@@ -212,10 +212,11 @@ class Recording:
 
     def _new_file(self) -> MessageFile:
         """The file, or the next part of several."""
-        path, describe = self.path, write_beside
+        path = self.path
         if self._folder is not None:
-            path, describe = self._folder.next_part(), self._folder.add
+            path = self._folder.next_part()
             self._notes[PART] = str(self._folder.count)
+        describe = write_beside if self._folder is None else self._folder.add
         file = McapFile(path, self._level, compression=self._settings.compression, describe=describe)
         with file.or_nothing():
             self._describe(file)

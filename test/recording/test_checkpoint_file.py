@@ -173,3 +173,16 @@ def test_a_changed_run_is_not_computed_again(tmp_path: Path) -> None:
     whole = tmp_path / "whole.mcap"
     assert call("replay", path, "--set", "x.getriebe.0.kv=8000", "-o", whole).exit_code == 0
     assert "are equal to the bit" in call("replay", whole, "--verify").output
+
+
+def test_a_run_that_is_too_short_for_a_checkpoint(tmp_path: Path) -> None:
+    path = simulated(tmp_path / "run.mcap")
+    with RunInputs(path) as recorded:
+        seconds = recorded.end * 1e-3
+    result = call("replay", path, "--checkpoints", 100)
+    assert (result.exit_code, " ".join(result.stderr.split())) == (
+        2,
+        f"P-ERR-26223 recording {path}: has no checkpoint within {seconds:g} s when they are 100 s apart; no file was "
+        "written, choose a shorter time",
+    )
+    assert not Path(f"{path}.checkpoints").exists()

@@ -7,10 +7,12 @@ from recording_support import MACHINE
 from small_disk import read_only, small_disk
 
 from cnc_ptp.cli import main
+from cnc_ptp.client import Machine
 from cnc_ptp.commands.output_file import write_output
 from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import CycleTick
 from cnc_ptp.recording.reader import read_recording
+from cnc_ptp.recording.recovery import recover
 from cnc_ptp.recording.settings import Settings, Split
 from cnc_ptp.recording.writer import Recording
 
@@ -100,3 +102,35 @@ def test_a_part_of_a_full_disk_by_the_command(disk):
     result = CliRunner().invoke(main, words)
     assert result.exit_code == 1 and "cannot be written" in result.stderr and f"{NO_SPACE}; " in result.stderr
     assert result.exception is None or isinstance(result.exception, SystemExit)
+
+
+def test_a_client_is_told_that_its_recording_has_ended(disk):
+    path = disk / "a.mcap"
+    leave(disk, 10)
+    machine = Machine.offline(ROOT / "config" / "ptp.yaml", record=path)
+    [event] = [event for event in machine.events(duration=5.0) if event.error_id == 26015]
+    assert f"recording {path}: cannot be written at offset " in event.text
+    assert f"{NO_SPACE}; the run continues without it, about cycle " in event.text
+    ended = refusal(machine.recorder.stop)
+    assert ended.startswith(f"P-ERR-26007 recording {path}: cannot be written at offset ")
+    assert refusal(machine.recorder.stop).startswith("P-ERR-26191 ")
+    machine.close()
+
+
+def test_a_client_is_told_at_the_end_at_the_latest(disk):
+    path = disk / "a.mcap"
+    leave(disk, 10)
+    machine = Machine.offline(ROOT / "config" / "ptp.yaml", record=path)
+    machine.run_for(5.0)
+    assert refusal(machine.close).startswith(f"P-ERR-26007 recording {path}: cannot be written at offset ")
+    assert not read_recording(path).complete
+
+
+def test_a_full_disk_leaves_what_was_recovered_before(disk, tmp_path):
+    source, output = tmp_path / "run.mcap", disk / "saved.mcap"
+    with Recording(source, MACHINE) as file:
+        ticks(file, range(0, 2000, 10))
+    output.write_text("former")
+    leave(disk, 0)
+    assert f": {NO_SPACE}; " in refusal(recover, source, output)
+    assert output.read_text() == "former" and len([*disk.iterdir()]) == 2

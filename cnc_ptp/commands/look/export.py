@@ -33,4 +33,6 @@ def export(
                 BAD_OUTPUT, f"{output} cannot be written: {error.strerror}", "the recording is unchanged"
             ) from None
     print(f"{output}: {count} rows of {name}")
+    if opened.missing:
+        print(f"note: {opened.missing}")
     return 0

@@ -41,6 +41,8 @@ def what_if(
         path = output or str(Path(folder) / "what_if.mcap")
         refused = compute(run, recorded, path)
         print(f"note: {run.note}" if run.note else "computed from 0 s")
+        if recorded.missing:
+            print(f"note: {recorded.missing}")
         if recorded.plc_file:
             print(f"note: the PLC {recorded.plc_file} is not executed again; its commands are those of the recording")
         for text in refused:
@@ -49,7 +51,7 @@ def what_if(
             print(f"note: the program of {channel} has not ended; --to a later time computes more of it")
         if diff or page or output is None:
             names = (Path(recording).name, Path(output).name if output else "changed")
-            show_difference(recording, path, page, names)
+            show_difference(recording, path, page, names, end=end)
     return 0
 
 
