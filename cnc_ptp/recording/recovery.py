@@ -37,8 +37,8 @@ def recover(source: str | Path, output: str | Path) -> Recovered:
     """Writes whole records of `source`, chunk by chunk, to `output`; chunks that are damaged are left out.
 
     A folder of parts becomes a folder of parts, without those of which nothing can be read. A file that is there is
-    unchanged until all is written. Raises CncError 26001, 26002, 26007, 26014, 26224 (nothing can be saved); of a folder
-    26020, and 26001 or 26002 when no part can be read.
+    unchanged until all is written. Raises CncError 26001, 26002, 26007, 26014, 26224 (nothing can be saved); of a
+    folder 26020, and 26001 or 26002 when no part can be read.
     """
     path, new = Path(source), Path(output)
     if not path.is_file() or path.name == FILE:
