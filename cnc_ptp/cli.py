@@ -263,8 +263,8 @@ def replay_command(**options: Any) -> None:
 
 
 @main.command("diff")
-@click.argument("first", type=click.Path(dir_okay=False))
-@click.argument("second", type=click.Path(dir_okay=False))
+@click.argument("first", type=click.Path())
+@click.argument("second", type=click.Path())
 @click.option("--from", "begin", type=float, help="Seconds of the run; without it from the start of both.")
 @click.option("--to", "end", type=float, help="Seconds of the run; without it to the end.")
 @click.option("--output", "-o", type=click.Path(dir_okay=False), help="Page of both runs on top of each other (.html).")
@@ -278,7 +278,7 @@ def diff_command(**options: Any) -> None:
 @main.command("report")
 @RECORDING
 @part_options
-@click.option("--compare", type=click.Path(dir_okay=False), help="Another recording, drawn on top of this one.")
+@click.option("--compare", type=click.Path(), help="Another recording, drawn on top of this one.")
 @click.option(
     "--align",
     type=click.Choice(("program", "start", "run")),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import atexit
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, replace
@@ -45,7 +46,7 @@ class Machine:
         self.axes: Mapping[str, Axis] = self._of(Axis)
         self.spindles: Mapping[str, Spindle] = self._of(Spindle)
         self.channels: Mapping[str, Channel] = self._of(Channel)
-        atexit.register(self.close)
+        atexit.register(self._close_at_exit)
 
     def _of(self, kind: type[Kind]) -> Mapping[str, Kind]:
         units = {name: unit for name, unit in self._units.items() if isinstance(unit, kind)}
@@ -218,8 +219,15 @@ class Machine:
             return
         self._let_go()
         self._session.closed = True
-        atexit.unregister(self.close)
+        atexit.unregister(self._close_at_exit)
         self._session.link.close()
+
+    def _close_at_exit(self) -> None:
+        """Of a program that has not closed it: nobody is left that could take an error."""
+        try:
+            self.close()
+        except CncError as error:
+            print(error, file=sys.stderr)
 
     def _let_go(self) -> None:
         """Units that MC_Stop of this program holds are free; a machine that is gone holds none."""

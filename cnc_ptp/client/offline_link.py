@@ -116,6 +116,7 @@ class OfflineLink(Link):
         else:
             recorder.snapshot(arguments["file"], arguments.get("seconds", 0.0), answers.append)
         recorder.settle(self.now)
+        self._take_events_of_recorder()
 
     def answer(self, ticket: int) -> Reply | None:
         return self._replies.pop(ticket, None)
@@ -190,6 +191,7 @@ class OfflineLink(Link):
 
     def _step(self) -> None:
         outputs = self._run.step()
+        self._take_events_of_recorder()
         for name, output in outputs.items():
             for event in output.events:
                 self.seen.take_event(event)
@@ -226,6 +228,14 @@ class OfflineLink(Link):
                 self._step()
         finally:
             self._run.close()
+            self._take_events_of_recorder()
+        if self._run.recorder is not None and self._run.recorder.failure is not None:
+            raise self._run.recorder.failure
+
+    def _take_events_of_recorder(self) -> None:
+        events, self._run.events = self._run.events, []
+        for event in events:
+            self.seen.take_event(event)
 
 
 def reply_of_recorder(answer: Answer) -> Reply:

@@ -8,7 +8,7 @@ from rich.console import Console
 
 from cnc_ptp.commissioning.faults import BAD_OUTPUT
 from cnc_ptp.errors import CncError
-from cnc_ptp.recording.overwriting import overwritten
+from cnc_ptp.recording.overwriting import overwritten, replacing
 
 
 def check_output(output: str | None, **inputs: str | None) -> None:
@@ -32,7 +32,8 @@ def write_output(output: str, content: str | bytes, *, remains: str = "the resul
     """Writes a file. Raises CncError 27030 with what `remains` without it."""
     data = content.encode() if isinstance(content, str) else content
     try:
-        Path(output).write_bytes(data)
+        with replacing(output) as file:
+            file.write_bytes(data)
     except OSError as error:
         raise CncError(BAD_OUTPUT, f"{output} cannot be written: {error.strerror}", remains) from None
 

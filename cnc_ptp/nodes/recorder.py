@@ -5,7 +5,6 @@ With `--foxglove PORT` it streams them, too.
 
 from __future__ import annotations
 
-import contextlib
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -60,7 +59,6 @@ from cnc_ptp.wire.ticks import Tick, decode_tick
 Sink = Recording | OnDemand
 
 BLOCKS_MISSING = 26114
-ENDED_EARLY = 26015
 QUIET = 0.2
 """Seconds without a message after which a recorder that is to end has seen everything."""
 LOOK_PERIOD = 0.05
@@ -154,19 +152,11 @@ class RecorderNode(PollingNode):
                 callback(*arguments)
             except CncError as error:
                 if error.number == NOT_WRITTEN and self._recording is not None:
-                    self._go_on_without(self._recording, error)
+                    self._recording.fail(error, max(0, self._last_tick))
                 else:
                     self.failure = self.failure or error
 
         return call
-
-    def _go_on_without(self, recording: OnDemand, error: CncError) -> None:
-        """The disk is full: the recording gets its end, if there is room for it, and the run continues."""
-        with contextlib.suppress(CncError):
-            recording.fail()
-        cycle = max(0, self._last_tick)
-        text = f"recorder: {error.reason}; the run continues without it, about cycle {cycle} and later are missing"
-        self._publish(Event(cycle, RECORDER, Severity.ERROR, ENDED_EARLY, text))
 
     def _publish(self, event: Event) -> None:
         stamp = convert.time_message(self._recorded.stamps.at(event.cycle))

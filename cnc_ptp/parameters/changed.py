@@ -65,9 +65,12 @@ def read_changes(texts: Sequence[str], machine: MachineParameters) -> Changes:
         if parameter is None:
             raise refused(text, " is not of the form unit.parameter=value, as x.getriebe.0.kv=8000")
         try:
-            changes.setdefault(parameter.unit, {})[parameter.ros_name] = parameter.checked(read_value(value))
+            checked, own = parameter.checked(read_value(value)), changes.setdefault(parameter.unit, {})
         except BadValue as error:
             raise refused(text, f": {parameter.subject}: {error.text}") from None
+        if parameter.ros_name in own:
+            raise refused(text, f": {parameter.subject} is given twice")
+        own[parameter.ros_name] = checked
     return changes
 
 

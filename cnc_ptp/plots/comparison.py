@@ -69,6 +69,7 @@ def comparison_page(
         page_head(title or "Comparison of two recordings", [detail for detail in details if detail]),
         "<main>",
         *(incomplete(recorded, letter) for recorded, letter in zip(pair, LETTERS, strict=True)),
+        alone(pair),
         card_grid(_cards(pair, found)),
         section("Differences", table(HEAD, _rows(found, units, pair[0])), NOTE),
         _paths(pair, units),
@@ -86,6 +87,17 @@ NOTE = "Of the cycles that both have; times are those of the plots."
 
 def incomplete(recorded: Recorded, letter: str) -> str:
     return "" if recorded.complete else f'<p class="warn">{letter} is incomplete: {escape(recorded.missing)}.</p>'
+
+
+def alone(pair: Sequence[Recorded]) -> str:
+    """Units that only one of the machines has, which cannot be compared."""
+    units = [[topic.removeprefix("/").removesuffix("/state") for topic in recorded.states] for recorded in pair]
+    texts = [
+        f"Only {letter} has {', '.join(own)}."
+        for letter, one, other in zip(LETTERS, units, units[::-1], strict=True)
+        if (own := [unit for unit in one if unit not in other])
+    ]
+    return f'<p class="warn">{escape(" ".join(texts))}</p>' if texts else ""
 
 
 def _cards(pair: Sequence[Recorded], found: Sequence[FieldDifference]) -> Iterator[tuple[str, str, bool]]:

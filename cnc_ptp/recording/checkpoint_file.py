@@ -5,9 +5,7 @@ The run is computed once. The file names the run that it belongs to by all that 
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
-from contextlib import suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -21,12 +19,15 @@ from cnc_ptp.recording.computed_again import commands_by_cycle, computed_again, 
 from cnc_ptp.recording.difference import field_difference
 from cnc_ptp.recording.mcap_file import McapFile
 from cnc_ptp.recording.opened import OpenRecording
+from cnc_ptp.recording.overwriting import replacing
 from cnc_ptp.recording.run_difference import CYCLE, fields_of
 from cnc_ptp.recording.run_inputs import CHECKPOINTS_OF, RunInputs, checkpoint_file
 from cnc_ptp.recording.selection import NOT_RECORDED
 from cnc_ptp.recording.writer import CHECKPOINT
 
 OTHER_RESULT = 26210
+NO_CHECKPOINT = 26223
+SHORTER = "no file was written, choose a shorter time"
 
 
 class Stored(NamedTuple):
@@ -45,20 +46,19 @@ def store_checkpoints(recorded: RunInputs, seconds: float) -> Stored:
     """
     machine = recorded.required_machine()
     path = checkpoint_file(recorded.path)
-    new = path.with_name(f"{path.name}.new")
-    try:
-        with OpenRecording(recorded.path) as states, CheckpointFile(new, recorded) as file:
-            checkpoints = Checkpoints(file, machine, seconds)
-            offline = fresh_machine(machine)
-            for _ in computed_again(offline, commands_by_cycle(recorded.commands, machine), recorded.end):
-                count = file.count
-                checkpoints.watch(offline)
-                if file.count > count:
-                    require_same(states, machine, offline.parts[1])
-        os.replace(new, path)
-    finally:
-        with suppress(OSError):
-            new.unlink(missing_ok=True)
+    with replacing(path) as new, OpenRecording(recorded.path) as states, CheckpointFile(new, recorded) as file:
+        checkpoints = Checkpoints(file, machine, seconds)
+        offline = fresh_machine(machine)
+        for _ in computed_again(offline, commands_by_cycle(recorded.commands, machine), recorded.end):
+            count = file.count
+            checkpoints.watch(offline)
+            if file.count > count:
+                require_same(states, machine, offline.parts[1])
+        if not (file.count or checkpoints.fault):
+            reason = (
+                f"recording {recorded.path}: has no checkpoint within {recorded.end * machine.cycle_time_us * 1e-6:g} s"
+            )
+            raise CncError(NO_CHECKPOINT, f"{reason} when they are {seconds:g} s apart", SHORTER)
     return Stored(path, file.count, checkpoints.fault)
 
 

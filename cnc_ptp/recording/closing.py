@@ -11,7 +11,7 @@ from mcap.writer import MCAP0_MAGIC
 from cnc_ptp.recording.bag import RECORD
 from cnc_ptp.recording.mcap_chunks import McapRecords, MessageRun, RawRecord
 from cnc_ptp.recording.mcap_file import METADATA, MISSING, RECORD_PREFIX, Contents, McapFile, bytes_of, count_chunk
-from cnc_ptp.recording.parts import describe_folder, numbered_parts
+from cnc_ptp.recording.parts import begun_parts, describe_folder
 
 
 def close_cut(path: str | Path) -> str:
@@ -40,7 +40,7 @@ def close_cut_recording(path: str | Path) -> str:
     folder = Path(path)
     if not folder.is_dir():
         return close_cut(path)
-    missing = "; ".join(filter(None, [close_cut(part) for part in numbered_parts(folder, folder.stem)]))
+    missing = "; ".join(filter(None, [close_cut(part) for part in begun_parts(folder, folder.stem)]))
     describe_folder(folder)
     return missing
 

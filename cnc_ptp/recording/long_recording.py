@@ -88,7 +88,6 @@ FIELDS = {
     CHANNEL_STATE: ["line", "path_velocity", "programmed_feed", "override_percent", "state"],
 }
 """What a report draws of them over time."""
-NOT_CLOSED = "the file was not closed; what was recorded after its last whole chunk is missing"
 
 
 def read_for_report(
@@ -128,7 +127,7 @@ def _read(
         for name in filter(is_kept, index.attachments):
             reader.attachment(name, index.attached(name))
         _feed(reader, index, _ids(index, SPARSE), index.chunks)
-        reader.end_of_file("" if index.indexed else NOT_CLOSED)
+        reader.end_of_file(index.missing)
     window = _window(reader.recorded, begin, end)
     few = _number_of_states(parts, window) <= most_states
     if few:

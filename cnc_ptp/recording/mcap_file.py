@@ -9,10 +9,11 @@ give their order in time. Chunks of several topics may be of the same time.
 from __future__ import annotations
 
 import contextlib
+import os
 import struct
 import zlib
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -139,7 +140,22 @@ class McapFile:
         if found is None:
             self._write(MCAP0_MAGIC)
             self._record(Header("ros2", f"cnc_ptp {LIBRARY_IDENTIFIER}"))
-            self._flush()
+            with self.or_nothing():
+                self._flush()
+
+    @contextlib.contextmanager
+    def or_nothing(self) -> Iterator[None]:
+        """What stands at the beginning of a file: when it cannot be written the file is not left."""
+        try:
+            yield
+        except CncError:
+            self._worker.shutdown()
+            self._close_stream()
+            file = Path(os.path.realpath(self.path))
+            if file.is_file():  # a device stays
+                with contextlib.suppress(OSError):
+                    file.unlink()
+            raise
 
     @property
     def size(self) -> int:
@@ -362,10 +378,13 @@ class McapFile:
 
     def _failed(self, error: OSError) -> CncError:
         self._cut_back()
+        at, remains = "", "nothing is in it"
+        if self._chunk_indexes:
+            at, remains = f" at offset {self._offset}", "recording ends here, the chunks before it stay readable"
         self._failure = CncError(
             NOT_WRITTEN,
-            f"recording {self.path}: cannot be written at offset {self._offset}: {error.strerror}",
-            "recording ends here, the chunks before it stay readable",
+            f"recording {self.path}: cannot be written{at}: {error.strerror}",
+            remains,
         )
         return self._failure
 

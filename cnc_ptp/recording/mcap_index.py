@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import struct
+import zlib
 from collections.abc import Collection, Iterator, Mapping
 from itertools import pairwise
 from pathlib import Path
@@ -28,6 +29,8 @@ END_SIZE = RECORD_PREFIX.size + 20 + len(MCAP0_MAGIC)
 CHUNK_INDEX = struct.Struct("<QQQQI")
 """First and last time, offset and length of the chunk, bytes of the table that follows."""
 INDEX_OFFSET = struct.Struct("<HQ")
+SUMMARY_CRC = struct.Struct("<I")
+NOT_CLOSED = "the file was not closed; what was recorded after its last whole chunk is missing"
 """A channel and the offset of its message index."""
 NO_INDEX: Mapping[int, int] = {}
 
@@ -74,6 +77,11 @@ class McapIndex(RecordReader):
             self._read_summary(summary)
         if not self.chunks and self._chunk_count != 0:
             self._scan()
+
+    @property
+    def missing(self) -> str:
+        """What the file lacks; empty for one that was closed."""
+        return "" if self.indexed else NOT_CLOSED
 
     def close(self) -> None:
         if self._file >= 0:
@@ -140,7 +148,14 @@ class McapIndex(RecordReader):
         if len(end) < END_SIZE or not end.endswith(MCAP0_MAGIC) or end[0] != Opcode.FOOTER:
             return None
         record = RawRecord(self._size - END_SIZE, Opcode.FOOTER, memoryview(end)[RECORD_PREFIX.size :])
-        return self.parse(Footer.read, record).summary_start or None
+        footer = self.parse(Footer.read, record)
+        start = int(footer.summary_start)
+        if not start:
+            return None
+        summary = self._bytes(start, max(0, self._size - start - len(MCAP0_MAGIC) - SUMMARY_CRC.size))
+        if footer.summary_crc not in (0, zlib.crc32(summary)):
+            raise self.corrupt(start, "the CRC of the summary does not match its content")
+        return start
 
     def _read_summary(self, start: int) -> None:
         for record in self._summary_records(start):

@@ -31,7 +31,7 @@ class MessageFields:
     """
 
     def __init__(self, schema: McapSchema) -> None:
-        """Raises CncError 26005 for a schema that cannot be used."""
+        """Raises CncError 26005, or whatever the library raises, for a schema that cannot be used."""
         self.schema: Schema = parse_schema(full_name(schema.name), schema.data.decode(errors="replace"))
         self._fields = dict(_leaves(self.schema, self.schema.fields))
         self.names = tuple(self._fields)

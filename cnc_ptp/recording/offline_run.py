@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from types import TracebackType
 
 from cnc_ptp.errors import CncError
@@ -53,6 +53,8 @@ class OfflineRun:
             self._recording = make_recording(record, machine_text, 0, cycle_time_ns, condition, settings)
         self.recorder: OnDemand | None = None
         """Records on demand, and has the recording of the run."""
+        self.events: list[Event] = []
+        """What it has told so far."""
         self.cycle_time = cycle_time_ns * 1e-9
         if snapshots is not None:
             self.recorder = OnDemand(
@@ -120,6 +122,7 @@ class OfflineRun:
 
     def _note_event(self, event: Event) -> None:
         """Of the recorder, which records it as one of the run."""
+        self.events.append(event)
         if self.recorder is not None:
             self.recorder.event(event)
 
@@ -133,8 +136,7 @@ class OfflineRun:
                 raise
             self.failure = self.failure or error
             if self.recorder is not None:
-                with suppress(CncError):
-                    self.recorder.fail()
+                self.recorder.fail(error, max(0, self.machine.next_cycle - 1))
 
     def __enter__(self) -> OfflineRun:
         return self

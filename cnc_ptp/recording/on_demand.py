@@ -10,6 +10,7 @@ import math
 import re
 from collections.abc import Callable, Iterable
 from concurrent.futures import Future, ThreadPoolExecutor, wait
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -26,6 +27,7 @@ from cnc_ptp.wire.block_codec import codec_of, head_of
 from cnc_ptp.wire.stamps import Stamps
 
 RECORDER = "recorder"
+ENDED_EARLY = 26015
 ALREADY_RECORDING = 26190
 NOT_RECORDING = 26191
 NOTHING_KEPT = 26193
@@ -104,6 +106,8 @@ class OnDemand:
         self.current = current
         self._machine_yaml, self._settings, self._snapshots = machine_yaml, settings, snapshots
         self._publish = publish
+        self.failure: CncError | None = None
+        """Why the recording ended that nobody has stopped."""
         self._first_cycle = first_cycle
         self._begin, self._end = 0, math.inf
         """Cycles that the present recording has."""
@@ -194,6 +198,7 @@ class OnDemand:
         require_new(file, where=refused)
         begin = self._newest
         self.current = self._make(file, self._settings, begin, f"asked for, from cycle {begin} on")
+        self.failure = None
         self._begin, self._end = begin, math.inf
         for record in self._history.before(begin):
             write_record(self.current, record)
@@ -202,7 +207,10 @@ class OnDemand:
         return Answer(begin)
 
     def stop(self, done: Done) -> None:
-        """Ends the present recording. Raises CncError 26191."""
+        """Ends the present recording. Raises CncError 26191, and 26007 of the one that could not be continued."""
+        if self.failure is not None:
+            failure, self.failure = self.failure, None
+            raise failure
         if self.current is None or self._end != math.inf:
             why = "no recording is being written" if self.current is None else "the recording is ending already"
             raise CncError(NOT_RECORDING, why, NOT_CHANGED, where=f"{RECORDER}: stop refused")
@@ -224,11 +232,18 @@ class OnDemand:
         require_new(file, where=refused)
         self._ask_for_snapshot(file, seconds, self._newest, done)
 
-    def fail(self) -> None:
-        """The present recording could not be written: it ends here. Raises CncError 26007 where it has no room."""
-        failed, self.current = self.current, None
-        if failed is not None:
-            failed.close()
+    def fail(self, error: CncError, cycle: int) -> None:
+        """The present recording could not be written: it gets its end, if there is room for it; tells so."""
+        self.failure = error
+        with suppress(CncError):
+            self._end_current()
+        text = f"{RECORDER}: {error.reason}; the run continues without it, about cycle {cycle} and later are missing"
+        self._publish(Event(cycle, RECORDER, Severity.ERROR, ENDED_EARLY, text))
+
+    def _end_current(self) -> None:
+        ended, self.current = self.current, None
+        if ended is not None:
+            ended.close()
 
     # automatic snapshots
 
@@ -299,7 +314,7 @@ class OnDemand:
         """At once: whoever starts the next one must find this one closed."""
         answer = Answer(int(self._end))
         try:
-            self.fail()
+            self._end_current()
         except CncError as error:
             answer = Answer(error=error)
         future: Future[Answer] = Future()

@@ -19,10 +19,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 import numpy as np
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.recording.mcap_file import METADATA
+from cnc_ptp.recording.mcap_file import METADATA, MISSING
 from cnc_ptp.recording.mcap_index import ChunkPlace, McapIndex
 from cnc_ptp.recording.message_fields import Column, MessageFields
-from cnc_ptp.recording.origin import require_known_format
+from cnc_ptp.recording.origin import notes_of
 from cnc_ptp.recording.parts import files_of
 from cnc_ptp.recording.selection import NOT_RECORDED, asked_time, nearest
 from cnc_ptp.wire.schemas import full_name
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     import pandas
 
 NO_PACKAGE = 26013
+BAD_SCHEMA = 26005
 TIME, LOG_TIME = "time", "log_time"
 """Columns that every topic has: s of the recording; ns as the file has it."""
 HEADER = "header."
@@ -93,12 +94,9 @@ class OpenRecording:
     def __init__(self, path: str | Path) -> None:
         self.path = Path(path)
         self._files = [McapIndex(file) for file in files_of(self.path)]
-        self.metadata: dict[str, str] = {}
-        for file in self._files:
-            for metadata in file.metadata:
-                if metadata.name == METADATA:
-                    require_known_format(self.path, metadata.metadata)
-                    self.metadata = {**metadata.metadata, **self.metadata}
+        records = chain.from_iterable(file.metadata for file in self._files)
+        self.metadata = notes_of(self.path, (record.metadata for record in records if record.name == METADATA))
+        self.missing = missing_of(self.metadata, self._files)
         first = min((chunk.first_ns for file in self._files for chunk in file.chunks), default=0)
         self.start_ns = int(self.metadata.get("start_ns", first))
         """Log time of time 0."""
@@ -106,6 +104,8 @@ class OpenRecording:
         self._chunks: dict[str, list[tuple[McapIndex, ChunkPlace]]] = {}
         """Of the topics that were asked for, in the order of time."""
         self.topics: dict[str, Topic] = {}
+        self.unreadable: list[str] = []
+        """Topics whose messages are none of ROS 2, or whose schema is damaged."""
         for file in self._files:
             for channel in file.channels.values():
                 self._add_topic(file, channel.id)
@@ -150,6 +150,11 @@ class OpenRecording:
                 return file.attached(name).decode(errors="replace")
         raise self._missing(f"holds no attachment '{name}'")
 
+    def span(self, topic: str) -> tuple[float, float]:
+        """First and last time of a topic that it holds, s."""
+        first, last = ((time - self.start_ns) * 1e-9 for time in self._span(topic))
+        return first, last
+
     def close(self) -> None:
         self._workers.shutdown()
         for file in self._files:
@@ -173,11 +178,17 @@ class OpenRecording:
         if known is not None:
             self.topics[channel.topic] = replace(known, count=known.count + count)
         elif count:
-            reader = self._readers[channel.topic] = MessageFields(schema)
+            try:
+                reader = self._readers[channel.topic] = MessageFields(schema)
+            except Exception:  # a schema of another program, or a damaged one: others of the file can be read
+                self.unreadable.append(channel.topic)
+                return
             self.topics[channel.topic] = Topic(channel.topic, full_name(schema.name), count, reader.names)
 
     def _names(self, topic: str, fields: Sequence[str]) -> list[str]:
         """Raises CncError 26011 for what the topic does not have."""
+        if topic in self.unreadable:
+            raise CncError(BAD_SCHEMA, f"recording {self.path}: the schema of {topic} is none of ROS 2", NOTHING)
         if topic not in self.topics:
             raise self._missing(f"holds no topic '{topic}'{nearest(topic, self.topics)}")
         known = self.topics[topic].fields
@@ -197,7 +208,7 @@ class OpenRecording:
 
     def _require_pieces(self, topic: str, start: float | None, end: float | None) -> None:
         if not self._pieces(topic, *self._bounds(start, end)):
-            first, last = ((time - self.start_ns) * 1e-9 for time in self._span(topic))
+            first, last = self.span(topic)
             asked = asked_time(start, end)
             raise self._missing(f"holds nothing of {topic} from {asked}, it covers {first:g} s to {last:g} s")
 
@@ -264,6 +275,11 @@ class OpenRecording:
             order = np.argsort(log_time, kind="stable")
             result = {name: column[order] for name, column in result.items()}
         return {name: result[name] for name in names}
+
+
+def missing_of(notes: Mapping[str, str], files: Iterable[McapIndex]) -> str:
+    """What a recording lacks, as it says itself and as its files end; empty for one that is whole."""
+    return "; ".join(filter(None, [notes.get(MISSING), *(file.missing for file in files)]))
 
 
 def package(name: str, effect: str = "") -> Any:

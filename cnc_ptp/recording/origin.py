@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import platform
 import subprocess
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
@@ -12,6 +12,7 @@ from pathlib import Path
 import cnc_ptp
 from cnc_ptp import KERNEL
 from cnc_ptp.errors import CncError
+from cnc_ptp.recording.mcap_file import MISSING
 
 FROM_THE_FUTURE = 26016
 FOREIGN = 26017
@@ -24,6 +25,8 @@ RECORD_WHEN = "record_when"
 """Key: the condition of a recording that does not begin with the run, or who has begun it."""
 WITHOUT = "not_computable"
 """Key: what is missing for the run to be computed again, if anything."""
+PART = "part"
+"""Key: the number of a file of several, from 0 on."""
 PATIENCE = 5.0
 """Seconds for git."""
 
@@ -64,6 +67,27 @@ def require_known_format(path: Path, metadata: Mapping[str, str]) -> None:
             f"format {FORMAT_VERSION}",
             "nothing was read, use a newer version of cnc_ptp",
         )
+
+
+def notes_of(path: Path, records: Iterable[Mapping[str, str]]) -> dict[str, str]:
+    """What the files of a recording say of it, one after another; the first that says something counts.
+
+    Without its earlier parts it is not computable. Raises CncError 26016.
+    """
+    notes: dict[str, str] = {}
+    parts: list[str] = []
+    missing: dict[str, None] = {}
+    for record in records:
+        require_known_format(path, record)
+        parts += [record[PART]] if PART in record else []
+        missing |= dict.fromkeys([record[MISSING]] if MISSING in record else [])
+        notes = {**record, **notes}
+    if missing:
+        notes[MISSING] = "; ".join(missing)
+    lacking = next((number for number, part in enumerate(parts) if part != str(number)), None)
+    if lacking is not None:
+        notes.setdefault(WITHOUT, f"part {lacking} of the run is not there")
+    return notes
 
 
 def require_own(path: Path, metadata: Mapping[str, str], states: Collection[str]) -> None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from cnc_ptp.errors import CncError
@@ -30,6 +32,25 @@ def overwritten(output: str, inputs: Mapping[str, str | None]) -> str:
             if _same(Path(output), named):
                 return f"file {named} of the machine file {path}"
     return ""
+
+
+@contextmanager
+def replacing(output: str | Path) -> Iterator[Path]:
+    """A file beside `output` that takes its place when it is whole; after an error the former one is unchanged.
+
+    A device is written itself.
+    """
+    file = Path(os.path.realpath(output))  # a link is kept
+    if file.exists() and not file.is_file():
+        yield file
+        return
+    part = file.with_name(f".part.{file.name}")
+    try:
+        yield part
+        part.replace(file)
+    finally:
+        with suppress(OSError):
+            part.unlink(missing_ok=True)
 
 
 def _same(one: Path, other: Path) -> bool:

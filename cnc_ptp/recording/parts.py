@@ -8,16 +8,19 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import yaml
 from mcap.exceptions import McapError
 from mcap.reader import make_reader
+from mcap.writer import MCAP0_MAGIC
 
 from cnc_ptp import yaml_text
 from cnc_ptp.errors import CncError
 from cnc_ptp.recording.bag import FILE, INFORMATION, bag_information, metadata_text
+from cnc_ptp.recording.overwriting import replacing
 
 NO_BAG = 26014
 NO_FOLDER = 26020
@@ -40,8 +43,13 @@ class PartsFolder:
                 NO_FOLDER, f"recording {folder}: no folder for its parts: {error.strerror}", "nothing is recorded"
             ) from error
 
+    @property
+    def count(self) -> int:
+        """Parts that are closed."""
+        return len(self._parts)
+
     def next_part(self) -> Path:
-        return self._folder / f"{self._folder.stem}_{len(self._parts)}.mcap"
+        return self._folder / f"{self._folder.stem}_{self.count}.mcap"
 
     def add(self, part: Path, information: dict[str, Any]) -> None:
         """A part was closed; `information` as bag_information has it."""
@@ -50,20 +58,35 @@ class PartsFolder:
 
 
 def numbered_parts(folder: Path, stem: str, first: int = 0) -> Iterator[Path]:
-    """The files of a folder that are numbered from `first` on, without a gap."""
-    number = first
-    while (part := folder / f"{stem}_{number}.mcap").is_file():
-        yield part
-        number += 1
+    """The files of a folder that are numbered from `first` on; of a gap the first that is not there."""
+    expected = first
+    numbers = [
+        int(found["number"])
+        for file in folder.iterdir()
+        if (found := NUMBERED.fullmatch(file.name))
+        and found["stem"] == stem
+        and file.name == f"{stem}_{int(found['number'])}.mcap"
+    ]
+    for number in sorted(number for number in numbers if number >= first):
+        if number > expected:
+            yield folder / f"{stem}_{expected}.mcap"
+        yield folder / f"{stem}_{number}.mcap"
+        expected = number + 1
+
+
+def begun_parts(folder: Path, stem: str, first: int = 0) -> list[Path]:
+    """The same without a last one that has no begin: the recorder was killed before its first byte."""
+    parts = [*numbered_parts(folder, stem, first)]
+    if first + len(parts) > 1 and parts and parts[-1].stat().st_size < len(MCAP0_MAGIC):
+        parts.pop()
+    return parts
 
 
 def write_folder(folder: Path, parts: Iterable[dict[str, Any]]) -> None:
     """Writes `metadata.yaml`; without room for it the parts themselves hold the same."""
-    try:
-        text = metadata_text({INFORMATION: joined_information([*parts])})
-        (folder / FILE).write_text(text, encoding="utf-8")
-    except OSError:
-        (folder / FILE).unlink(missing_ok=True)
+    text = metadata_text({INFORMATION: joined_information([*parts])})
+    with suppress(OSError), replacing(folder / FILE) as file:
+        file.write_text(text, encoding="utf-8")
 
 
 def joined_information(parts: list[dict[str, Any]]) -> dict[str, Any]:
@@ -94,7 +117,7 @@ def _begin(entry: Mapping[str, Any]) -> int:
 
 def describe_folder(folder: Path) -> None:
     """Writes the `metadata.yaml` of parts that are all closed: after a recorder was killed."""
-    write_folder(folder, [information_of(part) for part in numbered_parts(folder, folder.stem)])
+    write_folder(folder, [information_of(part) for part in begun_parts(folder, folder.stem)])
 
 
 def information_of(part: Path) -> dict[str, Any]:
@@ -115,8 +138,8 @@ def files_of(path: Path) -> list[Path]:
     listed = listed_files(folder)
     last = NUMBERED.fullmatch(listed[-1].name) if listed else None
     if last is not None:
-        return [*listed, *numbered_parts(folder, last["stem"], int(last["number"]) + 1)]
-    found = listed or [*numbered_parts(folder, folder.stem)]
+        return [*listed, *begun_parts(folder, last["stem"], int(last["number"]) + 1)]
+    found = listed or begun_parts(folder, folder.stem)
     if not found:
         raise CncError(
             NO_BAG,

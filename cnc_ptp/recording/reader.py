@@ -19,7 +19,7 @@ from cnc_ptp.protocol.event_values import read_event_values
 from cnc_ptp.recording.bag import QOS
 from cnc_ptp.recording.mcap_chunks import McapRecords, MessageRun, RawRecord, RecordReader
 from cnc_ptp.recording.mcap_file import METADATA, MISSING
-from cnc_ptp.recording.origin import require_known_format
+from cnc_ptp.recording.origin import notes_of
 from cnc_ptp.recording.parts import files_of
 from cnc_ptp.recording.writer import CHECKPOINT, CHECKPOINT_TEXT, MACHINE_FILE
 from cnc_ptp.wire.layout import Layout, Records, fixed_layout
@@ -286,6 +286,7 @@ class Reader:
     def __init__(self, path: Path) -> None:
         self._by_name: dict[str, TopicInfo] = {}
         self._missing: list[str] = []
+        self._notes: list[dict[str, str]] = []
         self.recorded = Recorded(path)
         self._layouts: dict[str, Layout] = {}
         self._rows: dict[str, list[npt.NDArray[np.uint8]]] = {}
@@ -323,8 +324,8 @@ class Reader:
 
     def metadata(self, metadata: Metadata) -> None:
         if metadata.name == METADATA:
-            require_known_format(self.recorded.path, metadata.metadata)
-            self.recorded.metadata.update(metadata.metadata)
+            self._notes.append(metadata.metadata)
+            self.recorded.metadata = notes_of(self.recorded.path, self._notes)
 
     def attachment(self, name: str, data: bytes) -> None:
         if is_kept(name):
@@ -332,7 +333,7 @@ class Reader:
 
     def finish(self) -> Recorded:
         recorded = self.recorded
-        recorded.missing = recorded.metadata.get(MISSING, "; ".join(self._missing))
+        recorded.missing = "; ".join(filter(None, [recorded.metadata.get(MISSING), *self._missing]))
         recorded.complete = not recorded.missing
         recorded.machine_yaml = recorded.attachments.pop(MACHINE_FILE, "")
         recorded.topics = {topic: info for topic, info in self._by_name.items() if info.count}

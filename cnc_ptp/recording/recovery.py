@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import os
 import struct
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from mcap.opcode import Opcode
 from mcap.records import Channel, Metadata, Schema
@@ -14,11 +15,14 @@ from mcap.well_known import MessageEncoding, SchemaEncoding
 from mcap.writer import MCAP0_MAGIC
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.recording.bag import FILE, RECORD
+from cnc_ptp.recording.bag import FILE, RECORD, write_beside
 from cnc_ptp.recording.mcap_chunks import KNOWN_OPCODES, MessageRun, RawRecord, RecordReader
-from cnc_ptp.recording.mcap_file import METADATA, MISSING, RECORD_PREFIX, McapFile
+from cnc_ptp.recording.mcap_file import METADATA, MISSING, NOT_WRITTEN, RECORD_PREFIX, McapFile
 from cnc_ptp.recording.mcap_index import McapIndex
+from cnc_ptp.recording.origin import WITHOUT
 from cnc_ptp.recording.parts import PartsFolder, files_of, information_of
+
+NOTHING_SAVED = 26224
 
 
 @dataclass
@@ -32,35 +36,62 @@ class Recovered:
 def recover(source: str | Path, output: str | Path) -> Recovered:
     """Writes whole records of `source`, chunk by chunk, to `output`; chunks that are damaged are left out.
 
-    A folder of parts becomes a folder of parts, without those of which nothing can be read.
-    Raises CncError 26001, 26002, 26007 and 26014; of a folder 26020, and 26001 or 26002 when no part can be read.
+    A folder of parts becomes a folder of parts, without those of which nothing can be read. A file that is there is
+    unchanged until all is written. Raises CncError 26001, 26002, 26007, 26014, 26224 (nothing can be saved); of a
+    folder 26020, and 26001 or 26002 when no part can be read.
     """
     path, new = Path(source), Path(output)
-    return _recover_file(path, new) if path.is_file() and path.name != FILE else _recover_parts(files_of(path), new)
+    if not path.is_file() or path.name == FILE:
+        return _recover_parts(files_of(path), new)
+    try:
+        with TemporaryDirectory(prefix=".part.", dir=new.parent) as folder:
+            part = Path(folder) / new.name
+            recovered = _recover_file(path, part)
+            require_something(path, recovered)
+            os.replace(part, os.path.realpath(new))
+    except OSError as error:
+        raise CncError(
+            NOT_WRITTEN, f"recording {new}: cannot be created: {error.strerror}", "nothing is recorded"
+        ) from error
+    write_beside(new, information_of(new))
+    return recovered
+
+
+def require_something(path: Path, recovered: Recovered) -> None:
+    """Raises CncError 26224."""
+    if not recovered.messages:
+        why = "".join(f"; {text}" for text in recovered.lost)
+        raise CncError(
+            NOTHING_SAVED, f"recording {path}: holds no message that can be saved{why}", "nothing was written"
+        )
 
 
 def _recover_parts(parts: list[Path], output: Path) -> Recovered:
     """`lost` names the part."""
-    readable, whole = [], Recovered()
+    readable: list[tuple[Path, list[str]]] = []
+    whole, gap = Recovered(), list[str]()
     for part in parts:
         try:
             _Records(part).close()
-            readable.append(part)
+            readable.append((part, gap))
+            gap = []
         except CncError as error:
             if part is parts[-1] and not readable:
                 raise
+            gap.append(part.name)
             whole.lost.append(f"{part.name}: {error.reason}")
     folder = PartsFolder(output)
-    for part in readable:
+    for number, (part, before) in enumerate(readable):
         target = folder.next_part()
-        recovered = _recover_file(part, target)
+        recovered = _recover_file(part, target, before, gap if number == len(readable) - 1 else [])
         folder.add(target, information_of(target))
         whole.messages += recovered.messages
         whole.lost += [f"{part.name}: {text}" for text in recovered.lost]
     return whole
 
 
-def _recover_file(path: Path, output: Path) -> Recovered:
+def _recover_file(path: Path, output: Path, before: Sequence[str] = (), behind: Sequence[str] = ()) -> Recovered:
+    """`before`, `behind`: parts of the run that cannot be read; without those before it cannot be computed again."""
     records = _Records(path)
     with McapFile(output) as file:
         copy = _Copy(records, file, *_names_of_summary(path))
@@ -68,8 +99,10 @@ def _recover_file(path: Path, output: Path) -> Recovered:
             copy.take(record)
         if records.end:
             copy.recovered.lost.append(records.end)
-        if copy.recovered.lost:
-            file.metadata(METADATA, {MISSING: "; ".join(copy.recovered.lost)})
+        lost = [*(f"{name} is missing" for name in [*before, *behind]), *copy.recovered.lost]
+        without = {WITHOUT: f"what was before it is lost: {', '.join(before)}"} if before else {}
+        if lost:
+            file.metadata(METADATA, {MISSING: "; ".join(lost), **without})
     return copy.recovered
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
+from math import nan
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -12,10 +13,10 @@ import numpy.typing as npt
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import MachineParameters, load_machine
-from cnc_ptp.recording.difference import COMPARED, FieldDifference, field_difference
+from cnc_ptp.recording.difference import COMPARED, NOT_COMPARABLE, FieldDifference, field_difference
 from cnc_ptp.recording.opened import TIME, OpenRecording
 from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, SPINDLE_STATE
-from cnc_ptp.recording.selection import NOT_RECORDED
+from cnc_ptp.recording.selection import NOT_RECORDED, asked_time
 from cnc_ptp.recording.statistics import IN_PROGRAM
 from cnc_ptp.recording.writer import MACHINE_FILE
 
@@ -30,6 +31,7 @@ class RunDifference(NamedTuple):
     rows           of all fields, also those that do not differ
     program_times  of the channels: s with a program running in each, from `begin` on
     cycle_time     s
+    notes          what a recording lacks, and that one ends before the other
     """
 
     rows: list[FieldDifference]
@@ -37,6 +39,7 @@ class RunDifference(NamedTuple):
     begin: float
     end: float
     cycle_time: float
+    notes: list[str]
 
     @property
     def parts_at(self) -> float | None:
@@ -50,7 +53,8 @@ def difference(
 ) -> RunDifference:
     """In the time that both have, at most from `begin` to `end` (s).
 
-    Raises CncError 26001 to 26003, 26011 (no recording of cnc_ptp), 26016, 26158 (of different machines).
+    Raises CncError 26001 to 26003, 26011 (no recording of cnc_ptp), 26016, 26022 (nothing in common), 26158 (of
+    different machines).
     """
     with ExitStack() as files:
         pair = [files.enter_context(OpenRecording(path)) for path in (first, second)]
@@ -68,8 +72,36 @@ def difference(
             rows += [field_difference(unit, name, cycles, one[name], other[name]) for name in one]
             if unit in machine.channels:
                 times[unit] = program_times(pair, unit, spans[-1][0], end, cycle_time)
-        start = min((span[0] for span in spans), default=0.0)
-        return RunDifference(rows, times, start, max((span[1] for span in spans), default=0.0), cycle_time)
+        if not rows:
+            times_of = " and ".join(f"{file.path} {span_text(file, machine)}" for file in pair)
+            reason = f"the recordings have no cycle in common{asked_part(begin, end)}: {times_of}"
+            raise CncError(NOT_COMPARABLE, reason, "nothing was compared")
+        start, last = min(span[0] for span in spans), max(span[1] for span in spans)
+        return RunDifference(rows, times, start, last, cycle_time, [*notes_of_both(pair, machine, end)])
+
+
+def notes_of_both(pair: Sequence[OpenRecording], machine: MachineParameters, end: float | None) -> Iterator[str]:
+    yield from (f"{file.path}: {file.missing}" for file in pair if file.missing)
+    ends = [recorded_span(file, machine)[1] for file in pair]
+    if end is None and abs(ends[0] - ends[1]) > machine.cycle_time_us * 0.5e-6:
+        texts = (f"{file.path} ends at {last:g} s" for file, last in zip(pair, ends, strict=True))
+        yield f"{', '.join(texts)}: what only one has was not compared"
+
+
+def recorded_span(file: OpenRecording, machine: MachineParameters) -> tuple[float, float]:
+    """From the first to the last state of all units, s; NaN without any."""
+    topics = [topic for unit in fields_of(machine) if (topic := f"/{unit}/state") in file.topics]
+    spans = [file.span(topic) for topic in topics]
+    return min((first for first, _ in spans), default=nan), max((last for _, last in spans), default=nan)
+
+
+def span_text(file: OpenRecording, machine: MachineParameters) -> str:
+    first, last = recorded_span(file, machine)
+    return f"covers {first:g} s to {last:g} s"
+
+
+def asked_part(begin: float | None, end: float | None) -> str:
+    return "" if begin is None and end is None else f" from {asked_time(begin, end)}"
 
 
 def fields_of(machine: MachineParameters) -> dict[str, tuple[str, ...]]:
@@ -79,6 +111,20 @@ def fields_of(machine: MachineParameters) -> dict[str, tuple[str, ...]]:
         **dict.fromkeys(machine.spindles, COMPARED[SPINDLE_STATE]),
         **dict.fromkeys(machine.axes, COMPARED[AXIS_STATE]),
     }
+
+
+def kinds_of(machine: MachineParameters) -> dict[str, str]:
+    """What each unit is, by name."""
+    return {
+        **dict.fromkeys(machine.channels, "channel"),
+        **dict.fromkeys(machine.spindles, "spindle"),
+        **{name: f"{'rotary' if axis.rotary else 'linear'} axis" for name, axis in machine.axes.items()},
+    }
+
+
+def named(unit: str, known: Mapping[str, str], other: Mapping[str, str]) -> str:
+    """A unit, and what it is where that of the other machine is something else."""
+    return unit if other.get(unit, known[unit]) == known[unit] else f"{unit} ({known[unit]})"
 
 
 def common_columns(
@@ -114,11 +160,13 @@ def program_times(
 def same_machine(first: OpenRecording, second: OpenRecording) -> MachineParameters:
     """The first one's: the same units and the same cycle time. Raises CncError 26158."""
     machines = [load_machine(file.attached(MACHINE_FILE), f"{file.path}:{MACHINE_FILE}") for file in (first, second)]
-    units = [[*fields_of(machine)] for machine in machines]
+    units = [kinds_of(machine) for machine in machines]
     if units[0] != units[1] or machines[0].cycle_time_us != machines[1].cycle_time_us:
+        others = [units[1], units[0]]
         texts = [
-            f"{file.path} has {', '.join(known)}, {machine.cycle_time_us / 1e3:g} ms"
-            for file, known, machine in zip((first, second), units, machines, strict=True)
+            f"{file.path} has {', '.join(named(unit, known, other) for unit in known)}, "
+            f"{machine.cycle_time_us / 1e3:g} ms"
+            for file, known, other, machine in zip((first, second), units, others, machines, strict=True)
         ]
         reason = f"the recordings are of different machines: {'; '.join(texts)}"
         raise CncError(OTHER_MACHINE, reason, "nothing was compared")

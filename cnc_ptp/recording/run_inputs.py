@@ -23,7 +23,8 @@ from cnc_ptp.protocol.blocks import CommandRecord
 from cnc_ptp.recording.bag import FILE
 from cnc_ptp.recording.mcap_file import METADATA
 from cnc_ptp.recording.mcap_index import ChunkPlace, McapIndex
-from cnc_ptp.recording.origin import require_computable, require_known_format
+from cnc_ptp.recording.opened import missing_of
+from cnc_ptp.recording.origin import notes_of, require_computable
 from cnc_ptp.recording.parts import files_of
 from cnc_ptp.recording.reader import COMMAND, STATE_TYPES, TICK, RawMessage, command_record
 from cnc_ptp.recording.writer import CHECKPOINT, CHECKPOINT_TEXT, MACHINE_FILE, PLC_FILE
@@ -58,12 +59,11 @@ class RunInputs:
         self.path = Path(path)
         self._parts = [_Part(file) for file in files_of(self.path)]
         self._beside: list[_Part] = []
-        values: dict[str, str] = {}
-        for metadata in chain.from_iterable(part.index.metadata for part in self._parts):
-            if metadata.name == METADATA:
-                require_known_format(self.path, metadata.metadata)
-                values |= metadata.metadata
+        records = chain.from_iterable(part.index.metadata for part in self._parts)
+        values = notes_of(self.path, (record.metadata for record in records if record.name == METADATA))
         require_computable(self.path, values)
+        self.missing = missing_of(values, (part.index for part in self._parts))
+        """What the recording lacks; empty for one that is whole."""
         self.start_ns = int(values.get("start_ns", "0"))
         self.cycle_time_ns = int(values.get("cycle_time_ns", "1000000"))
         self._attachments = {name: part for part in self._parts for name in part.index.attachments}
@@ -171,11 +171,16 @@ class _Part:
 
     def commands(self) -> Iterator[CommandRecord]:
         schema = next((each for each in self.index.schemas.values() if full_name(each.name) == COMMAND), None)
-        decode = DecoderFactory().decoder_for("cdr", schema) if schema else None
-        if decode is None:
+        if schema is None:
             return
-        for message in self.messages([COMMAND]):
-            yield command_record(decode(message.cdr))
+        try:
+            decode = DecoderFactory().decoder_for("cdr", schema)
+            assert decode is not None
+            yield from [command_record(decode(message.cdr)) for message in self.messages([COMMAND])]
+        except CncError:
+            raise
+        except Exception as error:  # whatever the generated decoder raises
+            raise self.index.corrupt(0, f"the commands cannot be read: {error!r}") from error
 
     def state_counts(self) -> Iterator[tuple[str, int]]:
         """Topics of states and the numbers of their messages."""

@@ -17,10 +17,10 @@ import numpy as np
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import ChannelBlock, CommandRecord, CycleBlock, CycleTick, Event, PlcBlock
-from cnc_ptp.recording.bag import QOS, TYPE_HASH
+from cnc_ptp.recording.bag import QOS, TYPE_HASH, write_beside
 from cnc_ptp.recording.blocks import StateKind, block_rows, fill_states, kind_of, kinds_in
 from cnc_ptp.recording.mcap_file import HEAD_SIZE, METADATA, McapFile
-from cnc_ptp.recording.origin import FORMAT, FORMAT_VERSION
+from cnc_ptp.recording.origin import FORMAT, FORMAT_VERSION, PART
 from cnc_ptp.recording.parts import PartsFolder
 from cnc_ptp.recording.qos import offered, profiles_text
 from cnc_ptp.recording.settings import Settings, Split
@@ -204,22 +204,29 @@ class Recording:
         self._files = {MACHINE_FILE: machine_yaml, **settings.files}
         times = {"start_ns": str(start_ns), "cycle_time_ns": str(cycle_time_ns)}
         self._notes = {FORMAT: str(FORMAT_VERSION), **times, **notes}
-        self._file = self._new_file() if file is None else file
-        self._describe()
+        if file is None:
+            self._file = self._new_file()
+        else:
+            self._file = file
+            self._describe(file)
 
     def _new_file(self) -> MessageFile:
         """The file, or the next part of several."""
-        compression = self._settings.compression
-        if self._folder is None:
-            return McapFile(self.path, self._level, compression=compression)
-        part = self._folder.next_part()
-        return McapFile(part, self._level, compression=compression, describe=self._folder.add)
+        path = self.path
+        if self._folder is not None:
+            path = self._folder.next_part()
+            self._notes[PART] = str(self._folder.count)
+        describe = write_beside if self._folder is None else self._folder.add
+        file = McapFile(path, self._level, compression=self._settings.compression, describe=describe)
+        with file.or_nothing():
+            self._describe(file)
+        return file
 
-    def _describe(self) -> None:
+    def _describe(self, file: MessageFile) -> None:
         """Tells the file what a reader must know of the run."""
         for name, text in self._files.items():
-            self._file.attachment(name, media_type(name), text.encode(), self.stamps.start_ns)
-        self._file.metadata(METADATA, self._notes)
+            file.attachment(name, media_type(name), text.encode(), self.stamps.start_ns)
+        file.metadata(METADATA, self._notes)
 
     def block(self, name: str, block: CycleBlock, *, handshakes: bool = True) -> None:
         """`/<name>/block` and, per cycle, `/<name>/state`.
@@ -378,9 +385,12 @@ class Recording:
         if not (0 < split.size <= self._file.size or 0 < split.seconds <= seconds):
             return
         self._part_begin = first_cycle
-        self._file.close()
-        self._file = self._new_file()
-        self._describe()
+        try:
+            self._file.close()
+            self._file = self._new_file()
+        except CncError:
+            self._closed = True
+            raise
         for name, topic in self._topics.items():
             topic.channel_id = self._announce(name, topic.type_names[1])
 

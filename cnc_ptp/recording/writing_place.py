@@ -32,6 +32,8 @@ def require_folder(path: str) -> None:
     Raises CncError 26113.
     """
     folder = Path(path)
+    if folder.exists() and not folder.is_dir():
+        raise CncError(NOT_WRITABLE, f"recording {path} cannot be written: it is no folder", "nothing was started")
     require_writable(str(folder / ".recorder" if folder.is_dir() else folder))
 
 

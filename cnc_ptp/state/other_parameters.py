@@ -8,6 +8,7 @@ still has the old value, it gets the new one. What it has computed since (a moti
 from __future__ import annotations
 
 import enum
+import re
 from collections.abc import Mapping
 from functools import partial
 from types import BuiltinMethodType, MethodType
@@ -68,9 +69,8 @@ class ParameterChange:
             return
         if is_changeable(old) or is_changeable(new):
             if type(old) is not type(new):
-                raise CncError(
-                    OTHER_PARTS, f"other parameters would give {place} another kind of part", "nothing was computed"
-                )
+                unit = re.split(r"[.\[]", place)[0]
+                raise CncError(OTHER_PARTS, f"other parameters would give {unit} other parts", "nothing was computed")
             if type(here) is type(old):
                 self.change(here, old, new, place)
         elif isinstance(old, tuple) and isinstance(new, tuple) and any(map(is_changeable, old)):

@@ -50,7 +50,13 @@ class Journal:
     def _read(self, description: Description) -> None:
         """Takes over what is whole; a last line that was cut off goes."""
         self._file.seek(0)
-        text = self._file.read()
+        try:
+            text = self._file.read()
+        except UnicodeDecodeError:
+            require_same(str(self.path), None, description)
+        begin = json.dumps({SWEEP: ""})[:-3]
+        if text[: len(begin)] != begin[: len(text)]:
+            require_same(str(self.path), None, description)
         whole = text[: text.rfind("\n") + 1]
         first, *lines = whole.splitlines() or [""]
         if whole:

@@ -10,6 +10,7 @@ from typing import Any
 
 from cnc_ptp.commissioning.faults import BAD_OUTPUT
 from cnc_ptp.errors import CncError
+from cnc_ptp.recording.overwriting import replacing
 from cnc_ptp.sweep.faults import NO_SWEEP_TABLE, NOTHING, sweep_package
 from cnc_ptp.sweep.journal import SWEEP, Description, description_of, require_same
 from cnc_ptp.sweep.results import Results, Row
@@ -34,14 +35,11 @@ def write_table(file: Path, results: Results, description: Description) -> None:
     columns[ERROR] = arrow.array([row.error for row in rows], arrow.int64())
     columns[MESSAGE] = arrow.array([row.message for row in rows], arrow.string())
     table = arrow.table(columns).replace_schema_metadata({SWEEP: json.dumps({SWEEP: description})})
-    part = file.with_name(f".part.{file.name}")
     try:
-        parquet.write_table(table, part, compression="zstd")
-        part.replace(file)
+        with replacing(file) as part:
+            parquet.write_table(table, part, compression="zstd")
     except OSError as error:
         raise CncError(BAD_OUTPUT, f"{file} cannot be written: {error.strerror}", KEPT) from None
-    finally:
-        part.unlink(missing_ok=True)
 
 
 def _alike(values: Sequence[Any]) -> list[Any]:

@@ -98,7 +98,7 @@ class Hub:
             except CncError as error:
                 self.why_none = error
                 await asyncio.sleep(AGAIN)
-            except Exception as error:  # a mistake of ours: pages are told, and it is tried again
+            except Exception as error:  # a mistake of ours: pages get a message, and it is tried again
                 traceback.print_exc()
                 self.face, self.why_none = None, server_failed(error)
                 await asyncio.sleep(AGAIN)

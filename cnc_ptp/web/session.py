@@ -210,6 +210,6 @@ class Session:
 
 
 def failed(error: Exception) -> CncError:
-    """What a page is told of a mistake of ours."""
+    """What a page gets after a mistake of ours."""
     traceback.print_exception(error)
     return CncError(SERVER_FAILED, f"the server has failed: {error!r}", "whether it was carried out is not known")

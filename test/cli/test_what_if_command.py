@@ -146,6 +146,11 @@ def units_of(path: Path) -> str:
             "P-ERR-26153 --set 'kv' is not of the form unit.parameter=value, as x.getriebe.0.kv=8000; "
             "nothing was computed",
         ),
+        (
+            ["--set", "x.getriebe.0.kv=1", "--set", "x.P-AXIS-00099=2"],
+            "P-ERR-26153 --set 'x.P-AXIS-00099=2': axis list, P-AXIS-00099 getriebe[0].kv of /x is given twice; "
+            "nothing was computed",
+        ),
         (["--diff-page", "page.txt"], "P-ERR-27030 page.txt: the file name of a report must end in .html; nothing was started"),
         (["--output", "{path}"], "P-ERR-26117 recording {path} would overwrite the recording {path}; nothing was started"),
     ],

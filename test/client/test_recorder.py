@@ -119,3 +119,11 @@ def test_options_without_sense_are_refused(make, options, reason):
     assert refused(make, PTP, recorder=RecorderOptions(**options)) == (
         f"P-ERR-26222 recorder options: {reason}; nothing was started"
     )
+
+
+def test_a_file_in_place_of_the_folder_for_snapshots(tmp_path):
+    file = tmp_path / "taken"
+    file.write_text("mine")
+    text = refused(Machine.offline, PTP, recorder=RecorderOptions(keep=1.0, snapshots=str(file)))
+    assert text == f"P-ERR-26113 recording {file} cannot be written: it is no folder; nothing was started"
+    assert file.read_text() == "mine"

@@ -52,7 +52,7 @@ def test_a_replay_begins_at_a_checkpoint_of_the_file(options: tuple[object, ...]
     result = call("replay", given, "--from", 3.2, "--diff")
     assert "note: computed from the checkpoint at 3 s" in result.output
     assert "both runs are equal to the bit" in result.output
-    assert [each.name for each in tmp_path.iterdir() if ".new" in each.name] == []
+    assert [each.name for each in tmp_path.iterdir() if ".part" in each.name] == []
 
 
 def test_a_file_of_another_run_does_not_count(tmp_path: Path) -> None:
@@ -111,7 +111,7 @@ def test_a_recording_with_another_result_gets_none(tmp_path: Path) -> None:
         f"P-ERR-26210 recording {path}: actual_position of y at 1.998 s is another one when computed again; "
         "no checkpoints were written, `cnc_ptp replay --verify` lists all differences"
     )
-    assert file.read_text() == "older" and not Path(f"{file}.new").exists()
+    assert file.read_text() == "older" and not [*tmp_path.glob(".part*")]
     assert call("replay", path, "--verify", "--checkpoints", 1).exit_code == 1
     assert file.read_text() == "older"
 
@@ -128,10 +128,11 @@ def test_a_recording_without_a_machine_file_gets_none(tmp_path: Path) -> None:
 
 def test_a_file_that_cannot_be_written(tmp_path: Path) -> None:
     path = simulated(tmp_path / "run.mcap")
-    Path(f"{path}.checkpoints.new").mkdir()
+    other = path.with_name(f".part.{path.name}.checkpoints")
+    other.mkdir()
     result = call("replay", path, "--checkpoints", 1)
     assert result.exit_code == 2
-    assert f"P-ERR-26007 recording {path}.checkpoints.new" in " ".join(result.output.split())
+    assert f"P-ERR-26007 recording {other}: cannot be created: Is a directory" in " ".join(result.output.split())
 
 
 def test_states_that_cannot_be_stored_are_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -172,3 +173,16 @@ def test_a_changed_run_is_not_computed_again(tmp_path: Path) -> None:
     whole = tmp_path / "whole.mcap"
     assert call("replay", path, "--set", "x.getriebe.0.kv=8000", "-o", whole).exit_code == 0
     assert "are equal to the bit" in call("replay", whole, "--verify").output
+
+
+def test_a_run_that_is_too_short_for_a_checkpoint(tmp_path: Path) -> None:
+    path = simulated(tmp_path / "run.mcap")
+    with RunInputs(path) as recorded:
+        seconds = recorded.end * 1e-3
+    result = call("replay", path, "--checkpoints", 100)
+    assert (result.exit_code, " ".join(result.stderr.split())) == (
+        2,
+        f"P-ERR-26223 recording {path}: has no checkpoint within {seconds:g} s when they are 100 s apart; no file was "
+        "written, choose a shorter time",
+    )
+    assert not Path(f"{path}.checkpoints").exists()

@@ -13,6 +13,7 @@ from cnc_ptp.plots.report_figures import time_columns
 from cnc_ptp.protocol.blocks import AxisBlock, CycleTick
 from cnc_ptp.recording import long_recording
 from cnc_ptp.recording.long_recording import extremes, read_for_report
+from cnc_ptp.recording.mcap_index import NOT_CLOSED
 from cnc_ptp.recording.reader import read_recording
 from cnc_ptp.recording.rows import time_rows
 from cnc_ptp.recording.selection import selected
@@ -219,5 +220,5 @@ def test_a_part_that_was_not_closed_is_read_as_far_as_it_is_whole(parts, tmp_pat
     last = copy / "run_3.mcap"
     last.write_bytes(last.read_bytes()[:-3000])
     reduced = read_for_report(copy, most_states=FEW)
-    assert (reduced.complete, reduced.missing) == (False, long_recording.NOT_CLOSED)
+    assert (reduced.complete, reduced.missing) == (False, NOT_CLOSED)
     assert reduced.last_cycle >= 5999

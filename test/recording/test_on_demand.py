@@ -2,7 +2,6 @@
 
 import math
 import resource
-from contextlib import suppress
 from functools import partial
 
 import pytest
@@ -402,11 +401,13 @@ def test_a_disk_that_gets_full_ends_a_recording_on_demand_and_nothing_else(tmp_p
         with pytest.raises(CncError) as full:
             story.run(20.0)
         assert full.value.number == NOT_WRITTEN
-        with suppress(CncError):  # as RecorderNode does
-            story.recorder.fail()
+        story.recorder.fail(full.value, 300)  # as RecorderNode does
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
     assert story.recorder.current is None
+    with pytest.raises(CncError) as told:
+        story.recorder.stop(lambda answer: None)
+    assert told.value is full.value
     recorded = read_recording(tmp_path / "a.mcap")
     assert not recorded.complete and verify(recorded, replay_blocks).equal
     story.run(0.05)  # the error has cut the block short in which it came

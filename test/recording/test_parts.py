@@ -215,6 +215,15 @@ def test_folders_that_hold_no_recording_are_refused(tmp_path, copy):
     )
 
 
+def test_a_part_that_is_missing_is_named_without_a_metadata_file_too(copy):
+    (copy / "metadata.yaml").unlink()
+    (copy / "run_1.mcap").unlink()
+    text = f"recording {copy / 'run_1.mcap'}: cannot be opened: No such file or directory"
+    for call in (read_recording, cnc_ptp.recording.open, RunInputs):
+        assert refusal(call, copy) == f"P-ERR-26001 {text}; nothing was read, check the path"
+    assert f"lost: run_1.mcap: {text}" in recovered(copy, copy.with_name("saved"))[1]
+
+
 def test_a_folder_that_cannot_be_made_is_refused(tmp_path):
     file = tmp_path / "file"
     file.write_text("good")
@@ -290,7 +299,8 @@ def test_parts_of_which_the_last_was_cut_at_any_byte(tmp_path):
     last, whole = folder / names[-1], (folder / names[-1]).read_bytes()
     before = sum(1 for _ in iter_messages(folder)) - sum(1 for _ in iter_messages(last))
     counts = []
-    for size in [*range(8, len(whole), 211), len(whole)]:
+    (folder / "metadata.yaml").unlink()
+    for size in [0, 1, 7, *range(8, len(whole), 211), len(whole)]:
         last.write_bytes(whole[:size])
         counts.append(recover(folder, tmp_path / "saved").messages)
         assert sum(1 for _ in iter_messages(folder)) == counts[-1]

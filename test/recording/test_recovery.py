@@ -3,6 +3,7 @@
 import pytest
 from click.testing import CliRunner
 from mcap.reader import make_reader
+from mcap.writer import Writer
 from recording_support import MACHINE, smooth_run
 
 import cnc_ptp.recording
@@ -37,11 +38,17 @@ def test_every_byte_at_which_a_file_may_be_cut(tmp_path):
             with pytest.raises(CncError, match="not an MCAP file"):
                 recover(cut, output)
             continue
-        recovered = recover(cut, output)
+        try:
+            recovered = recover(cut, output)
+        except CncError as refused:
+            text = f"P-ERR-26224 recording {cut}: holds no message that can be saved; nothing whole follows at offset "
+            assert str(refused).startswith(text) and str(refused).endswith("; nothing was written")
+            assert not counts and [*output.parent.iterdir()] == []
+            continue
         found = messages(output)
         assert found == expected[: len(found)] and len(found) == recovered.messages
         counts.append(len(found))
-    assert counts == sorted(counts) and {*counts} == {0, 1, 2, 3}
+    assert counts == sorted(counts) and {*counts} == {1, 2, 3}
     assert recovered.lost == [] and read_recording(output).complete
     assert read_recording(output).machine_yaml == MACHINE
 
@@ -72,3 +79,24 @@ def test_the_recording_itself_is_not_overwritten(tmp_path):
     smooth_run(tmp_path / "run.mcap", 0.1)
     result = CliRunner().invoke(cli.main, ["recover", str(tmp_path / "run.mcap"), "-o", str(tmp_path / "run.mcap")])
     assert result.exit_code == 2 and "would overwrite the recording" in " ".join(result.output.split())
+
+
+def test_a_file_without_messages_of_ros_gives_none(tmp_path):
+    path, output = tmp_path / "foreign.mcap", tmp_path / "out.mcap"
+    with path.open("wb") as stream:
+        writer = Writer(stream)
+        writer.start()
+        channel = writer.register_channel("/note", "json", writer.register_schema("note", "jsonschema", b"{}"))
+        writer.add_message(channel, 0, b"{}", 0)
+        writer.finish()
+    output.write_text("former")
+    result = CliRunner().invoke(cli.main, ["recover", str(path), "-o", str(output)])
+    assert result.exit_code == 2
+    assert " ".join(result.stderr.split()).startswith(
+        f"P-ERR-26224 recording {path}: holds no message that can be saved; at offset "
+    )
+    assert "/note holds no messages of ROS 2" in result.stderr.replace("\n", " ")
+    assert output.read_text() == "former" and sorted(each.name for each in tmp_path.iterdir()) == [
+        path.name,
+        output.name,
+    ]

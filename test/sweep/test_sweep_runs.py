@@ -365,3 +365,22 @@ def test_an_interrupt_while_workers_start_is_no_error_of_theirs(tmp_path):
     sweep = sweep_in(tmp_path)
     assert not sweep.run(broken, lambda: True, lambda count: None)
     assert not sweep.journal.exists()
+
+
+@pytest.mark.parametrize("content", [b"my own notes", b"\xff\xfe\n", b"{}\n", b"notes\nmore"])
+def test_a_foreign_file_of_the_name_of_the_journal_is_kept(tmp_path, content):
+    sweep = sweep_in(tmp_path)
+    sweep.journal.write_bytes(content)
+    with pytest.raises(CncError) as refused:
+        run_here(sweep)
+    assert str(refused.value) == (
+        f"P-ERR-26182 {sweep.journal} is no journal of a sweep; nothing was started, give another name"
+    )
+    assert sweep.journal.read_bytes() == content
+
+
+@pytest.mark.parametrize("content", [b"", b'{"cnc_', b'{"cnc_ptp sweep": {"pro'])
+def test_a_journal_that_was_cut_in_its_first_line_begins_again(tmp_path, content):
+    sweep = sweep_in(tmp_path)
+    sweep.journal.write_bytes(content)
+    assert run_here(sweep) and not sweep.journal.exists()

@@ -16,8 +16,8 @@ from typing import Any
 HERE = Path(__file__).parent
 sys.path[:0] = [str(HERE)]
 
-from web_browser_support import InThread, chromium, open_page  # noqa: E402
 from fake_machine import STATIC, Fake  # noqa: E402
+from web_browser_support import InThread, chromium, open_page  # noqa: E402
 
 SEGMENTS = 150_001
 TURN = """async () => {

@@ -14,8 +14,8 @@ HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
 sys.path[:0] = [str(HERE), str(HERE.parent / "support"), str(ROOT)]
 
-from web_browser_support import DESKTOP, PHONE, InThread, chromium, open_page, until  # noqa: E402
 from PIL import Image  # noqa: E402
+from web_browser_support import DESKTOP, PHONE, InThread, chromium, open_page, until  # noqa: E402
 
 from cnc_ptp.web.access.access import Access  # noqa: E402
 from cnc_ptp.web.access.guard import Names  # noqa: E402

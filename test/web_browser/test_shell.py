@@ -1,8 +1,8 @@
 """The shell of the pages: all of them open, keys, themes, a broken connection, texts that are no markup."""
 
 import pytest
-from web_browser_support import HERE, PHONE, until
 from fake_machine import NASTY
+from web_browser_support import HERE, PHONE, until
 
 PAGES = ["operate", "watch", "scope", "commission", "alarms", "program"]
 AXE = (HERE / "vendor" / "axe.js").read_text(encoding="utf-8")

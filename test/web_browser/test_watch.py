@@ -1,7 +1,7 @@
 """Watch and recordings: backplot, progress, time slider."""
 
-from web_browser_support import InThread, open_page, until
 from fake_machine import Fake
+from web_browser_support import InThread, open_page, until
 
 SEGMENTS = 150_000
 

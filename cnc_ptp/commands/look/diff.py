@@ -54,10 +54,12 @@ def print_difference(found: RunDifference) -> None:
     """A table of all columns that differ."""
     console = Console(highlight=False, soft_wrap=True)
     console.print(f"compared from {found.begin:g} s to {found.end:g} s", markup=False)
+    for note in found.notes:
+        console.print(f"note: {note}", markup=False)
     for channel, (one, two) in found.program_times.items():
         console.print(f"program time {channel}: {one:.3f} s -> {two:.3f} s ({two - one:+.3f} s)", markup=False)
     if found.parts_at is None:
-        console.print("both runs are equal to the bit")
+        console.print("both runs are equal to the bit in the columns that are compared")
         return
     console.print(f"the runs part at {found.parts_at:g} s")
     table = Table("unit", "column", "largest", "now", "differ by", "at s", "part at s", box=SIMPLE_HEAD, pad_edge=False)

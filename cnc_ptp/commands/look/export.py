@@ -10,6 +10,7 @@ from cnc_ptp.commands.output_file import check_output
 from cnc_ptp.commissioning.faults import BAD_OUTPUT
 from cnc_ptp.errors import CncError
 from cnc_ptp.recording.export import WRITERS, export_topic
+from cnc_ptp.recording.overwriting import replacing
 
 
 def export(
@@ -23,16 +24,15 @@ def export(
         raise CncError(BAD_OUTPUT, wrong, "nothing was started")
     check_output(output, recording=recording)
     name = topic if topic.startswith("/") else f"/{topic}"
-    part = file.with_name(f".part.{file.name}")
     with cnc_ptp.recording.open(recording) as opened:
         try:
-            count = export_topic(opened, name, part, *fields, start=begin, end=end)
-            part.replace(file)
+            with replacing(file) as part:
+                count = export_topic(opened, name, part, *fields, start=begin, end=end)
         except OSError as error:
             raise CncError(
                 BAD_OUTPUT, f"{output} cannot be written: {error.strerror}", "the recording is unchanged"
             ) from None
-        finally:
-            part.unlink(missing_ok=True)
     print(f"{output}: {count} rows of {name}")
+    if opened.missing:
+        print(f"note: {opened.missing}")
     return 0

@@ -15,10 +15,10 @@ from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nc.block_search import StartPoint
 from cnc_ptp.nodes.composed import run_composed
 from cnc_ptp.nodes.monitor import RunMonitor
-from cnc_ptp.nodes.recorder import ENDED_EARLY
 from cnc_ptp.nodes.supervisor import RunOptions, Supervisor
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.recording.node_figures import BLOCKS, CAME_TWICE, LOST_BLOCKS, following_error
+from cnc_ptp.recording.on_demand import ENDED_EARLY
 from cnc_ptp.recording.overwriting import check_recording
 from cnc_ptp.recording.recorder_options import RecorderOptions
 

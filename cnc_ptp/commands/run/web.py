@@ -54,7 +54,7 @@ def connector(recording: str | None) -> Callable[[], Face]:
     if recording is not None:
         from cnc_ptp.web.faces.recorded_face import RecordedFace
 
-        first = [RecordedFace(recording)]  # what is wrong with it is told before anything is served
+        first = [RecordedFace(recording)]  # what is wrong with it is reported before anything is served
         return lambda: first.pop() if first else RecordedFace(recording)
     from cnc_ptp.web.faces.live_face import live_face
 

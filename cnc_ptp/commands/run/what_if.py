@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import chain, islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -40,6 +41,8 @@ def what_if(
         path = output or str(Path(folder) / "what_if.mcap")
         refused = compute(run, recorded, path)
         print(f"note: {run.note}" if run.note else "computed from 0 s")
+        if recorded.missing:
+            print(f"note: {recorded.missing}")
         if recorded.plc_file:
             print(f"note: the PLC {recorded.plc_file} is not executed again; its commands are those of the recording")
         for text in refused:
@@ -48,7 +51,7 @@ def what_if(
             print(f"note: the program of {channel} has not ended; --to a later time computes more of it")
         if diff or page or output is None:
             names = (Path(recording).name, Path(output).name if output else "changed")
-            show_difference(recording, path, page, names)
+            show_difference(recording, path, page, names, end=end)
     return 0
 
 
@@ -61,8 +64,10 @@ def compute(run: WhatIf, recorded: RunInputs, path: str) -> list[str]:
         notes[WITHOUT] = (
             f"it is what became of {recorded.path.name} from cycle {run.begin} on, what was before is there"
         )
+    blocks = run.run()
+    first = [*islice(blocks, 1)]  # what refuses the change does it now, before a file is overwritten
     with Recording(path, run.machine_text, recorded.start_ns, recorded.cycle_time_ns, notes=notes) as recording:
-        for outputs in run.run():
+        for outputs in chain(first, blocks):
             write(recording, outputs)
             for record in [record for output in outputs.values() for record in output.records if not record.accepted]:
                 if (record.cycle, record.target, record.command) not in known:

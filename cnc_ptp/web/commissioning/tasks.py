@@ -120,7 +120,7 @@ class Tasks:
 
     @staticmethod
     async def _read(number: int, process: asyncio.subprocess.Process, tell: Tell) -> str:
-        """All that it says, to its end; each piece is told as progress. Of a long report the end is kept."""
+        """All that it says, to its end; each piece is sent as progress. Of a long report the end is kept."""
         assert process.stdout is not None
         text = b""
         while piece := await process.stdout.read(1 << 16):

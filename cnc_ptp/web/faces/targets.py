@@ -46,7 +46,7 @@ class Targets:
 def set_position_at(
     axis: str, cycle: int, blocks: Sequence[tuple[str, CycleBlock]], state: Mapping[str, Any]
 ) -> float | None:
-    """At the begin of a cycle: of its block, or of a standstill; None where it is not known."""
+    """At the start of a cycle: of its block, or of a standstill; None where it is not known."""
     for unit, block in blocks:
         if unit == axis and isinstance(block, AxisBlock) and 0 <= cycle - 1 - block.first_cycle < block.count:
             return block.set_position[cycle - 1 - block.first_cycle]

@@ -21,7 +21,7 @@ def try_to_draw(drawing: Drawing) -> bytes | str:
         return draw(drawing)
     except CncError as error:
         return error.full_message
-    except Exception as error:  # a mistake of ours is told as well
+    except Exception as error:  # a mistake of ours is shown as well
         return repr(error)
 
 
