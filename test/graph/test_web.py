@@ -85,9 +85,9 @@ def test_a_machine_is_operated_and_its_server_killed(ros_domain, machine, folder
     verified(recording)
     recorded = read_recording(recording)
     told = [event.text for event in recorded.events if event.source == "web"]
-    assert told[0] == "web: axis x: move_absolute, carried out"
-    assert told[1].startswith("web: axis x: move_absolute, refused with P-ERR-")
-    assert told[2:] == ["web: axis x: jog with 5 begins"]
+    assert told[:2] == ["web (page 1): take_command", "web: axis x: move_absolute, carried out"]
+    assert told[2].startswith("web: axis x: move_absolute, refused with P-ERR-")
+    assert told[3:] == ["web: axis x: jog with 5 begins"]
     assert [event.error_id for event in recorded.events if event.source == "plc" and event.error_id] == [26134]
     assert recorded.states["/x/state"]["set_velocity"][-1] == 0.0
 
