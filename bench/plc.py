@@ -249,7 +249,7 @@ class Plc:
 
     def pause(self, seconds: float) -> None:
         end = time.monotonic() + seconds
-        self.wait(lambda: time.monotonic() >= end)
+        self.wait(lambda: time.monotonic() >= end, seconds + PATIENCE)
 
     def answer_time(self) -> float:
         """Milliseconds from a call of a service of an axis at a standstill to its answer."""
