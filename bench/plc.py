@@ -160,10 +160,11 @@ def send(messages: int) -> tuple[float, float, float, float]:
     """In its own process: seconds that so many messages on each topic took, those of a core, the largest delay of one,
     and the last value.
 
-    They are serialised before, so that what is measured is the machine and not a client in Python; and the sender has
-    the priority that the nodes have: a PLC has a processor of its own.
+    They are serialised before, so that what is measured is the machine and not a client in Python. It has the priority
+    of a usual process: where processors are short, it falls behind, and the machine does not.
     """
     import rclpy
+    from rclpy.duration import Duration
     from rclpy.serialization import serialize_message
 
     from cnc_ptp import msg
@@ -178,7 +179,6 @@ def send(messages: int) -> tuple[float, float, float, float]:
     texts = [serialize_message(msg.Override(valid=True, percent=percent)) for percent in percents]
     while not all(writer.get_subscription_count() for writer in writers):
         time.sleep(0.01)
-    process.take_priority()
     begin, of_core, lag = time.monotonic(), time.process_time(), 0.0
     for number in range(messages):
         for writer in writers:
@@ -187,7 +187,8 @@ def send(messages: int) -> tuple[float, float, float, float]:
         lag = max(lag, -left)
         time.sleep(max(0.0, left))
     seconds, of_core = time.monotonic() - begin, time.process_time() - of_core
-    time.sleep(SETTLING)
+    for writer in writers:  # the newest value is on its way until then; it is lost with its writer
+        writer.wait_for_all_acked(Duration(seconds=PATIENCE))
     node.destroy_node()
     return seconds, of_core, lag, percents[(messages - 1) % 41]
 

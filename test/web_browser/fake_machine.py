@@ -257,6 +257,10 @@ class Fake:
     def operator(self) -> dict[str, Any]:
         return {"holder": None if self.holder is None else {"user": "web", "page": self.holder}, "asking": None}
 
+    def has_received(self, **fields: Any) -> bool:
+        """Whether any page has sent a message with these fields; what else a page sends meanwhile does not matter."""
+        return any(fields.items() <= message.items() for message in list(self.received))
+
     async def _socket(self, request: web.Request) -> web.WebSocketResponse:
         socket = web.WebSocketResponse()
         await socket.prepare(request)

@@ -129,9 +129,7 @@ def test_the_emergency_stop_needs_no_command_right(look, fake):
     page = look()
     page.click("text=Emergency stop")
     page.wait_for_selector(".pill >> text=Emergency stop")
-    assert {"unit": "plc", "command": "emergency_stop", "arguments": {"enabled": True}}.items() <= fake.received[
-        -1
-    ].items()
+    assert fake.has_received(unit="plc", command="emergency_stop", arguments={"enabled": True})
     page.on("dialog", lambda dialog: dialog.accept())
     page.click("text=Release stop")
     page.wait_for_selector(".pill >> text=Ready")
@@ -171,7 +169,7 @@ def test_a_commissioner_takes_the_command_over(look, fake):
     second.click("text=Take over")
     second.wait_for_selector("text=You are the operator")
     assert asked == ["Take the command from web? The jogs of that page end."]
-    assert {"type": "take_command", "force": True}.items() <= fake.received[-1].items()
+    assert fake.has_received(type="take_command", force=True)
     first.wait_for_selector("text=Operator: web")
 
 
