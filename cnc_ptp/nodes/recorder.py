@@ -98,7 +98,8 @@ class RecorderNode(PollingNode):
         self._settings = options.settings()
         self._snapshots = options.snapshots_of(self._units)
         self._server = None if foxglove is None else LiveServer(foxglove, "cnc_ptp")
-        self._live: Recording | None = None
+        self._sinks: list[Sink] = []
+        """The live stream and the recording, since the first tick."""
         self._machine_yaml = machine_yaml
         self._path = path
         self._cycle_ns = machine.cycle_time_us * 1000
@@ -190,8 +191,9 @@ class RecorderNode(PollingNode):
             if not self._free_run:
                 process.take_priority()
             if self._server is not None:
-                self._live = live_stream(self._server, start_ns, self._cycle_ns)
+                self._sinks.append(live_stream(self._server, start_ns, self._cycle_ns))
             self._recording = self._begin(start_ns, message.first_cycle)
+            self._sinks.append(self._recording)
             for record in self._early:
                 record()
             self._early.clear()
@@ -287,11 +289,6 @@ class RecorderNode(PollingNode):
     def _recorded(self) -> OnDemand:
         assert self._recording is not None
         return self._recording
-
-    @property
-    def _sinks(self) -> list[Sink]:
-        """The live stream and the recording, since the first tick."""
-        return [sink for sink in (self._live, self._recording) if sink is not None]
 
     def _look(self) -> None:
         """Takes the ticks and blocks that have come, and writes when it is time."""

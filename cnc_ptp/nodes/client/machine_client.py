@@ -178,8 +178,11 @@ def connected(*, patience: float = PATIENCE) -> Iterator[MachineClient]:
     process.initialise()
     try:
         client = MachineClient()
-        client.find_machine(patience)
-        yield client
+        try:
+            client.find_machine(patience)
+            yield client
+        finally:
+            client.end()
     finally:
         rclpy.try_shutdown()
 
