@@ -43,7 +43,8 @@ def store_checkpoints(recorded: RunInputs, seconds: float, show: Callable[[Outpu
     """Computes the run and writes its state every so many seconds of machine time to the file beside the recording.
 
     At each of them the values of the recording are compared; `show` takes what was computed. Raises CncError 26007
-    and 26113 where the file cannot be written, 26155 (no machine file), 26210 for another result; then an older file remains.
+    and 26113 where the file cannot be written, 26155 (no machine file), 26210 for another result; then an older file
+    remains.
     """
     machine = recorded.required_machine()
     path = checkpoint_file(recorded.path)
