@@ -90,25 +90,19 @@ def test_the_result_of_a_verification_is_the_same(tmp_path, seed, settings, cut)
     assert in_file.states == {} and in_file.events == [] and in_file.missing == in_memory.missing
     assert (end_of(in_file), in_file.last_cycle) == (end_of(in_memory), in_memory.last_cycle)
     one, other = verify(in_memory, replay), verify(in_file, replay)
-    assert not one.equal and one.differences >= 1 and one.topics["/y/state"].duplicated
-    assert one.topics["/x/state"].missing and one.topics["/x/state"].surplus
+    assert not one.equal and one.topics["/y/state"].duplicated and one.topics["/x/state"].missing
+    assert cut or (one.differences == 1 and one.topics["/x/state"].surplus)
     assert other.topics == one.topics and other.text() == one.text()
 
 
-CYCLES = 60_000
+CYCLES = 120_000
 
 
 def moving(count):
     """The blocks of one axis."""
-    names = [name for name, field in AxisBlock.__dataclass_fields__.items() if field.type == "list[float]"]
     for first in range(0, count, 10):
         values = [0.5 * first + place for place in range(10)]
-        block = Blocks(1).axis(0)
-        block.first_cycle = first
-        for name in names[:15]:
-            setattr(block, name, values)
-        block.state = block.status_bits = block.error_id = [1] * 10
-        yield "x", block
+        yield "x", AxisBlock(first, 10, *[values] * 15, *[[1] * 10] * 3)
 
 
 def peak_of(call):
@@ -127,7 +121,7 @@ def test_neither_a_verification_nor_an_identification_has_all_states_in_memory(t
             recording.block(name, block)
     recorded, all_states = peak_of(lambda: read_recording(path))
     size = recorded.states["/x/state"].nbytes
-    assert all_states > size > 8_000_000
+    assert all_states > size > 10_000_000
     del recorded
     result, needed = peak_of(lambda: verify(read_stored(path), lambda _: moving(CYCLES)))
     assert result.equal and result.compared == CYCLES
