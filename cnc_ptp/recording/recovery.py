@@ -48,32 +48,32 @@ def recover(source: str | Path, output: str | Path) -> Recovered:
     if not path.is_file() or path.name == FILE:
         return _recover_parts(path, new)
     target = Path(os.path.realpath(new))
-    with _beside(target, new, NOT_WRITTEN, "cannot be created") as part:
-        recovered = _recover_file(path, part)
-        require_something(path, recovered)
-        os.replace(part, target)
+    try:
+        with _beside(target, new) as part:
+            recovered = _recover_file(path, part)
+            require_something(path, recovered)
+            os.replace(part, target)
+    except OSError as error:
+        reason = f"recording {new}: cannot be created: {error.strerror}"
+        raise CncError(NOT_WRITTEN, reason, NOTHING_WRITTEN) from error
     write_beside(new, information_of(new))
     return recovered
 
 
 @contextmanager
-def _beside(target: Path, output: Path, number: int, reason: str) -> Iterator[Path]:
+def _beside(target: Path, output: Path) -> Iterator[Path]:
     """The name of `target` in a folder beside it, which is removed at the end: what is written there has to be moved.
 
-    `output`, `number`, `reason`: what a text says where that is not possible.
+    Raises CncError 26007 of `output` where there is no room for it, OSError where there can be no folder.
     """
-    try:
-        with TemporaryDirectory(prefix=".part.", dir=target.parent) as folder:
-            new = Path(folder) / target.name
-            try:
-                yield new
-            except CncError as error:
-                if error.number != NOT_WRITTEN:
-                    raise
-                text = error.reason.replace(str(new), str(output))
-                raise CncError(NOT_WRITTEN, text, NOTHING_WRITTEN) from error
-    except OSError as error:
-        raise CncError(number, f"recording {output}: {reason}: {error.strerror}", NOTHING_WRITTEN) from error
+    with TemporaryDirectory(prefix=".part.", dir=target.parent) as folder:
+        try:
+            yield Path(folder) / target.name
+        except CncError as error:
+            if error.number != NOT_WRITTEN:
+                raise
+            why = error.reason.rpartition(": ")[2]
+            raise CncError(NOT_WRITTEN, f"recording {output}: cannot be written: {why}", NOTHING_WRITTEN) from error
 
 
 def require_something(path: Path, recovered: Recovered) -> None:
@@ -87,12 +87,16 @@ def _recover_parts(source: Path, output: Path) -> Recovered:
     """`lost` names the part."""
     parts = files_of(source)
     target = Path(os.path.realpath(output))
-    with _beside(target, output, NO_FOLDER, "no folder for its parts") as new:
-        if target.exists() and not target.is_dir():
-            raise FileExistsError(EEXIST, os.strerror(EEXIST))
-        whole = _write_parts(parts, new)
-        require_something(source, whole)
-        replace_parts(new, target)
+    try:
+        with _beside(target, output) as new:
+            if target.exists() and not target.is_dir():
+                raise FileExistsError(EEXIST, os.strerror(EEXIST))
+            whole = _write_parts(parts, new)
+            require_something(source, whole)
+            replace_parts(new, target)
+    except OSError as error:
+        reason = f"recording {output}: no folder for its parts: {error.strerror}"
+        raise CncError(NO_FOLDER, reason, NOTHING_WRITTEN) from error
     return whole
 
 
