@@ -44,7 +44,7 @@ class StoredStates:
 
     def __init__(self, dtype: np.dtype[Any]) -> None:
         self.dtype = dtype
-        self.count = 0
+        self._count = 0
         self._pieces: list[Callable[[], Records]] = []
         self._stretches: list[Stretch] = []
         self._sorted: tuple[Cycles, Cycles] | None = None
@@ -65,8 +65,11 @@ class StoredStates:
             self._stretches.append(Stretch(first, last, len(self._pieces), place))
             place += last - first + 1
         self._pieces.append(read)
-        self.count += len(cycles)
+        self._count += len(cycles)
         self._sorted = None
+
+    def __len__(self) -> int:
+        return self._count
 
     @property
     def first(self) -> int:
@@ -189,7 +192,7 @@ class StoredRecording(Recorded):
 
     @property
     def longest(self) -> int:
-        return max((states.count for states in self.stored.values()), default=0)
+        return max((len(states) for states in self.stored.values()), default=0)
 
 
 def read_stored(path: str | Path) -> StoredRecording:

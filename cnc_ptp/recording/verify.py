@@ -262,10 +262,10 @@ class _Check:
     def note_missing(self, cycles: Cycles) -> None:
         """Not those before a trigger, and behind the end of a file that was cut off."""
         if RECORD_WHEN in self.recorded.metadata:
-            first = self.states.first if self.states is not None else np.iinfo(np.int64).max
+            first = self.states.first if self.states else np.iinfo(np.int64).max
             cycles = cycles[cycles.astype(np.int64) >= first]
         if not self.recorded.complete:
-            last = self.states.last if self.states is not None else -1
+            last = self.states.last if self.states else -1
             cycles = cycles[cycles.astype(np.int64) <= last]
         self.result.missing.extend(cycles.tolist())
 

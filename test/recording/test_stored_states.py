@@ -44,7 +44,7 @@ def test_states_are_found_by_their_cycles_in_any_order(pieces, first, length):
     inside = (in_order["cycle"] >= first) & (in_order["cycle"] <= first + length)
     assert states.rows(first, first + length).tolist() == in_order[inside].tolist()
     cycles, counts = np.unique(whole["cycle"], return_counts=True)
-    assert states.count == len(whole)
+    assert len(states) == len(whole)
     assert cycles_of(states.repeated()) == cycles[counts > 1].tolist()
     assert cycles_of(states.intervals()) == cycles.tolist()
     if len(whole):
