@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import tempfile
+import tracemalloc
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 from mcap.writer import CompressionType, Writer
@@ -13,6 +15,7 @@ from bench.figures import Effort, Figure, ShowProgress, median_of, medians_of, s
 from cnc_ptp.plots.report import report_page
 from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, CycleBlock, CycleTick, PlcBlock, SpindleBlock
 from cnc_ptp.recording.reader import iter_messages, read_recording
+from cnc_ptp.recording.stored_states import read_stored
 from cnc_ptp.recording.verify import verify
 from cnc_ptp.recording.writer import Recording
 from cnc_ptp.wire.schemas import load_schema
@@ -125,6 +128,16 @@ def seconds(call: Callable[[], object]) -> Callable[[], float]:
     return measure
 
 
+def largest_memory(call: Callable[[], object]) -> float:
+    """Bytes that a call needs at once."""
+    tracemalloc.start()
+    try:
+        call()
+        return float(tracemalloc.get_traced_memory()[1])
+    finally:
+        tracemalloc.stop()
+
+
 def writing(effort: Effort, run: Run, path: Path) -> Iterator[Figure]:
     """Messages per second compared with mcap.Writer; cost of a block."""
     peer = McapPeer(path)
@@ -151,10 +164,14 @@ def reading(effort: Effort, run: Run, path: Path) -> Iterator[Figure]:
     measures = [
         lambda: read_recording(path),
         lambda: verify(recorded, lambda _: (pair for blocks in run for pair in blocks)),
+        lambda: verify(read_stored(path), lambda _: (pair for blocks in run for pair in blocks)),
     ]
-    read, compare = medians_of(effort.runs, [seconds(measure) for measure in measures])
+    read, compare, from_file = medians_of(effort.runs, [seconds(measure) for measure in measures])
     yield Figure("read a recording", length / read, "× real time")
     yield Figure("compare with a second run", length / compare, "× real time")
+    yield Figure("read and compare, states left in the file", length / from_file, "× real time")
+    for name, read_states in (("read", read_recording), ("looked through for a comparison", read_stored)):
+        yield Figure(f"memory of {length:.0f} s {name}", largest_memory(partial(read_states, path)) / 1e6, "MB")
     page = path.with_suffix(".html")
     report = median_of(effort.runs, seconds(lambda: page.write_text(report_page(recorded), encoding="utf-8")))
     yield Figure(f"report of {length:.0f} s", report, "s")

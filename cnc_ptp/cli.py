@@ -248,13 +248,13 @@ def check_command(**options: Any) -> None:
 @replay_options
 def replay_command(**options: Any) -> None:
     """Compute a recorded run again, also changed, or publish it."""
-    from cnc_ptp.commands.run.replay import replay
-
     changes = take_changes(options)
     if changes is not None:
         from cnc_ptp.commands.run.what_if import what_if
 
         sys.exit(what_if(options["recording"], **changes))
+    from cnc_ptp.commands.run.replay import replay
+
     if not options["publish"]:
         ros_arguments().require_none("cnc_ptp replay without --publish")
         if options["inputs"] or options["rate"] != 1.0:

@@ -42,6 +42,10 @@ class CncError(Exception):
         """`message`, and of a program from where the line was called."""
         return self.message
 
+    def meaning(self, _effect: str) -> CncError:
+        """The same error, told by a command that knows what does not happen now; most errors know it themselves."""
+        return self
+
     def __str__(self) -> str:
         return f"P-ERR-{self.number} {self.message}"
 

@@ -17,7 +17,7 @@ from cnc_ptp.machine.command_files import with_program
 from cnc_ptp.machine.offline import STUCK_TIME
 from cnc_ptp.machine.wiring import build_units, unit_kinds
 from cnc_ptp.nodes.unit.requests import RUN_OVER
-from cnc_ptp.parameters import ParameterSet, machine_text, read_machine
+from cnc_ptp.parameters import ParameterError, ParameterSet, machine_text, read_machine
 from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.protocol.blocks import Command, CommandRecord, PlcBlock
 from cnc_ptp.protocol.commands import BAD_ARGUMENT, NEEDS_SOMETHING, THROUGH_PLC
@@ -40,7 +40,10 @@ class OfflineLink(Link):
     def __init__(self, machine: str, *, record: str | None = None, recorder: RecorderOptions | None = None) -> None:
         """Raises ParameterError, and CncError 26007, 26012, 26019, 26020, 26110, 26113, 26117, 26222."""
         check_recording(record, machine_file=machine)
-        self._parameters = read_machine(machine)
+        try:
+            self._parameters = read_machine(machine)
+        except ParameterError as error:
+            raise error.meaning("nothing was started") from None
         self.kinds = unit_kinds(self._parameters)
         self.seen = Observations(self.kinds)
         self.cycle_time = self._parameters.cycle_time_us * 1e-6

@@ -12,6 +12,22 @@ from cnc_ptp.commands.console import print_error
 from cnc_ptp.errors import WRONG_INPUT, CncError
 from cnc_ptp.ros_arguments import split as split_ros_arguments
 
+WITHOUT_NODES = {
+    "simulate": "nothing was started",
+    "sweep": "nothing was started",
+    "circle": "nothing was started",
+    "identify": "nothing was made",
+    "check": "nothing was checked",
+    "replay": "nothing was computed",
+    "diff": "nothing was compared",
+    "plot": "nothing was drawn",
+    "layout": "nothing was written",
+    "lists": "nothing was written",
+    "params": "no parameters were read",
+    "web": "nothing was served",
+}
+"""What commands that start no nodes do not do with a machine file that is wrong."""
+
 
 class Group(click.Group):
     """Prints a refusal as one text and ends with status 2; no traceback. ROS arguments are its context's object."""
@@ -28,7 +44,8 @@ class Group(click.Group):
         try:
             return super().invoke(context)
         except CncError as error:
-            print_error(error)
+            effect = WITHOUT_NODES.get(context.find_root().invoked_subcommand or "")
+            print_error(error if effect is None else error.meaning(effect))
             sys.exit(WRONG_INPUT)
 
 

@@ -47,10 +47,13 @@ class AxisTrace:
     ) -> AxisTrace:
         """Of the fields of AxisState messages (a mapping, or a structured array (n,)), repeated cycles once."""
         names = rows.dtype.names or () if isinstance(rows, np.ndarray) else tuple(rows)
-        cycle, order = np.unique(np.asarray(rows["cycle"]).astype(np.int64), return_index=True)
+        cycle = np.asarray(rows["cycle"]).astype(np.int64)
+        order: slice | npt.NDArray[np.intp] = slice(None)
+        if (cycle[1:] <= cycle[:-1]).any():
+            cycle, order = np.unique(cycle, return_index=True)
 
         def column(name: str) -> Array:
-            return np.asarray(rows[name], dtype=np.float64)[order]
+            return np.ascontiguousarray(rows[name], dtype=np.float64)[order]
 
         return cls(
             axis,

@@ -1,7 +1,7 @@
 """Errors of a machine file: one number per kind, one line per problem, all problems in one exception."""
 
-from collections.abc import Sequence
-from typing import NamedTuple, Protocol
+from collections.abc import Callable, Sequence
+from typing import NamedTuple, Protocol, TypeVar
 
 from cnc_ptp.errors import CncError
 
@@ -34,6 +34,7 @@ LIST_OUTPUT = 25045  # the result exists already or cannot be written
 LIST_VALUE = 25046  # a value or comment that a list cannot hold
 
 EFFECT = "the node does not start"
+"""Of a machine file that a node reads."""
 
 
 class Place(NamedTuple):
@@ -59,7 +60,11 @@ class Problem(NamedTuple):
     text: str
 
     def __str__(self) -> str:
-        return f"{self.place}: {self.text}; {EFFECT}"
+        return self.line(EFFECT)
+
+    def line(self, effect: str) -> str:
+        """With what does not happen now."""
+        return f"{self.place}: {self.text}; {effect}"
 
 
 class Numbered(Protocol):
@@ -69,22 +74,30 @@ class Numbered(Protocol):
     def error_id(self) -> int: ...
 
 
-def one_line_each(problems: Sequence[Numbered]) -> str:
+Kind = TypeVar("Kind", bound=Numbered)
+
+
+def one_line_each(problems: Sequence[Kind], text: Callable[[Kind], str] = str) -> str:
     """The text of an error that has several problems: the number of the first is its own, the others begin theirs."""
     first, *others = problems
-    return "\n".join([str(first), *(f"P-ERR-{problem.error_id} {problem}" for problem in others)])
+    return "\n".join([text(first), *(f"P-ERR-{problem.error_id} {text(problem)}" for problem in others)])
 
 
 class ParameterError(CncError):
-    """A machine file that no node accepts; `problems` has all of them, in the order of the file.
+    """A machine file that no node and no command accepts; `problems` has all of them, in the order of the file.
 
     The message has one line per problem, each with file, line and column. The error number is that of the first
     problem, the following lines begin with their own.
     """
 
-    def __init__(self, problems: Sequence[Problem]) -> None:
+    def __init__(self, problems: Sequence[Problem], effect: str = EFFECT) -> None:
+        """`effect`: what does not happen now."""
         self.problems = tuple(sorted(problems, key=lambda problem: problem.place))
-        super().__init__(self.problems[0].error_id, one_line_each(self.problems))
+        self._effect = effect
+        super().__init__(self.problems[0].error_id, one_line_each(self.problems, lambda problem: problem.line(effect)))
 
-    def __reduce__(self) -> tuple[type["ParameterError"], tuple[tuple[Problem, ...]]]:
-        return type(self), (self.problems,)
+    def meaning(self, effect: str) -> "ParameterError":
+        return ParameterError(self.problems, effect)
+
+    def __reduce__(self) -> tuple[type["ParameterError"], tuple[tuple[Problem, ...], str]]:
+        return type(self), (self.problems, self._effect)

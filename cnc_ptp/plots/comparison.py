@@ -32,19 +32,19 @@ from cnc_ptp.plots.report_figures import COLOURS
 from cnc_ptp.plots.time_plots import HINT, time_plots
 from cnc_ptp.recording.command_words import json_object
 from cnc_ptp.recording.difference import (
+    LETTERS,
     PROGRAM,
+    Compared,
     FieldDifference,
-    aligned,
     common_cycles,
-    differences,
+    compared,
     measure_of,
     parameter_differences,
 )
 from cnc_ptp.recording.reader import CHANNEL_STATE, Recorded
 from cnc_ptp.recording.rows import OTHER, SET, Line, PlotRow, time_rows
-from cnc_ptp.recording.statistics import axis_units, in_machine_order, summary, torque_units
+from cnc_ptp.recording.statistics import axis_units, summary, torque_units
 
-LETTERS = ("A", "B")
 PAIRS = (BLUE, RED)
 WITH_DIFFERENCE = ("position", "feed", "speed", "angle")
 """Plots below which B − A is drawn."""
@@ -60,18 +60,22 @@ def comparison_page(
     date: str = "",
 ) -> str:
     """The page as text; `align`: see `aligned`, whose errors it raises. `names`: of A and B, or those of the files."""
-    pair = aligned(in_machine_order(first), in_machine_order(second), align)
-    names = names or (first.path.name, second.path.name)
+    return page_of(compared(first, second, align), names=names, title=title, date=date)
+
+
+def page_of(both: Compared, *, names: tuple[str, str] | None = None, title: str = "", date: str = "") -> str:
+    """The page of two recordings that are on one time scale."""
+    pair = both.pair
+    names = names or (pair[0].path.name, pair[1].path.name)
     details = [*(f"{letter}: {name}" for letter, name in zip(LETTERS, names, strict=True)), date]
-    units = {**axis_units(second), **axis_units(first)}
-    found = list(differences(*pair))
+    units = units_of(pair)
     parts = [
         page_head(title or "Comparison of two recordings", [detail for detail in details if detail]),
         "<main>",
         *(incomplete(recorded, letter) for recorded, letter in zip(pair, LETTERS, strict=True)),
-        alone(pair),
-        card_grid(_cards(pair, found)),
-        section("Differences", table(HEAD, _rows(found, units, pair[0])), NOTE),
+        f'<p class="warn">{escape(" ".join(both.alone))}</p>' if both.alone else "",
+        card_grid(_cards(both)),
+        section("Differences", table(HEAD, _rows(both.found, units, pair[0])), NOTE),
         _paths(pair, units),
         section("Over time", time_plots(merged(pair), list(compared_rows(pair, units))), HINT),
         _parameters(pair),
@@ -79,6 +83,11 @@ def comparison_page(
         "</main></body></html>\n",
     ]
     return "\n".join(part for part in parts if part)
+
+
+def units_of(pair: Sequence[Recorded]) -> dict[str, str]:
+    """mm or deg by axis, of both."""
+    return {**axis_units(pair[1]), **axis_units(pair[0])}
 
 
 HEAD = ("unit", "field", "", "largest of A", "largest of B", "largest |B − A|", "at s", "part at s")
@@ -89,26 +98,14 @@ def incomplete(recorded: Recorded, letter: str) -> str:
     return "" if recorded.complete else f'<p class="warn">{letter} is incomplete: {escape(recorded.missing)}.</p>'
 
 
-def alone(pair: Sequence[Recorded]) -> str:
-    """Units that only one of the machines has, which cannot be compared."""
-    units = [[topic.removeprefix("/").removesuffix("/state") for topic in recorded.states] for recorded in pair]
-    texts = [
-        f"Only {letter} has {', '.join(own)}."
-        for letter, one, other in zip(LETTERS, units, units[::-1], strict=True)
-        if (own := [unit for unit in one if unit not in other])
-    ]
-    return f'<p class="warn">{escape(" ".join(texts))}</p>' if texts else ""
-
-
-def _cards(pair: Sequence[Recorded], found: Sequence[FieldDifference]) -> Iterator[tuple[str, str, bool]]:
-    figures = [summary(recorded) for recorded in pair]
+def _cards(both: Compared) -> Iterator[tuple[str, str, bool]]:
+    figures = [summary(recorded) for recorded in both.pair]
     times = [each["program_time_s"] for each in figures]
     for letter, time in zip(LETTERS, times, strict=True):
         yield f"program time of {letter}", value_text(time, "s", 3), False
     if None not in times:
         yield "program time, B − A", f"{times[1] - times[0]:+.3f} s", False
-    parted = [each.parted for each in found if each.field.startswith("set_") and each.parted >= 0]
-    apart = f"{min(parted) * pair[0].cycle_time_ns * 1e-9:.3f} s" if parted else "never"
+    apart = "never" if both.parted is None else f"{both.parted:.3f} s"
     yield "set values part at", apart, False
     for label, key in (
         ("errors of A / B", "errors"),

@@ -5,17 +5,18 @@ The run is computed once. The file names the run that it belongs to by all that 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from cnc_ptp.errors import CncError
+from cnc_ptp.machine.offline import Outputs
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import CycleBlock
 from cnc_ptp.recording.checkpoints import Checkpoints
-from cnc_ptp.recording.computed_again import commands_by_cycle, computed_again, fresh_machine
+from cnc_ptp.recording.computed_again import commands_by_cycle, computed_again, fresh_machine, no_progress
 from cnc_ptp.recording.difference import field_difference
 from cnc_ptp.recording.mcap_file import McapFile
 from cnc_ptp.recording.opened import OpenRecording
@@ -38,18 +39,20 @@ class Stored(NamedTuple):
     fault: str
 
 
-def store_checkpoints(recorded: RunInputs, seconds: float) -> Stored:
+def store_checkpoints(recorded: RunInputs, seconds: float, show: Callable[[Outputs], None] = no_progress) -> Stored:
     """Computes the run and writes its state every so many seconds of machine time to the file beside the recording.
 
-    At each of them the values of the recording are compared. Raises CncError 26007 and 26113 where the file cannot be
-    written, 26155 (no machine file), 26210 for another result; then an older file remains.
+    At each of them the values of the recording are compared; `show` takes what was computed. Raises CncError 26007
+    and 26113 where the file cannot be written, 26155 (no machine file), 26210 for another result; then an older file
+    remains.
     """
     machine = recorded.required_machine()
     path = checkpoint_file(recorded.path)
     with replacing(path) as new, OpenRecording(recorded.path) as states, CheckpointFile(new, recorded) as file:
         checkpoints = Checkpoints(file, machine, seconds)
         offline = fresh_machine(machine)
-        for _ in computed_again(offline, commands_by_cycle(recorded.commands, machine), recorded.end):
+        for outputs in computed_again(offline, commands_by_cycle(recorded.commands, machine), recorded.end):
+            show(outputs)
             count = file.count
             checkpoints.watch(offline)
             if file.count > count:

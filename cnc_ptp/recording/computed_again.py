@@ -15,6 +15,10 @@ from cnc_ptp.protocol.unit import PLC
 ByCycle = dict[int, list[CommandRecord]]
 
 
+def no_progress(_outputs: Outputs) -> None:
+    """For runs that nobody watches."""
+
+
 def commands_by_cycle(records: Iterable[CommandRecord], machine: MachineParameters) -> ByCycle:
     """Those to channels, spindles and axes; what the PLC made of its own are among them."""
     by_cycle: ByCycle = defaultdict(list)

@@ -13,13 +13,14 @@ import yaml
 from cnc_ptp import yaml_text
 from cnc_ptp.errors import CncError
 from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, SPINDLE_STATE, Recorded
-from cnc_ptp.recording.statistics import IN_PROGRAM
+from cnc_ptp.recording.statistics import IN_PROGRAM, in_machine_order
 from cnc_ptp.recording.units import unit_of
 from cnc_ptp.wire.layout import Records
 
 TOO_LONG = 26021
 NOT_COMPARABLE = 26022
 NOTHING = "nothing was drawn"
+LETTERS = ("A", "B")
 PROGRAM, START, RUN = "program", "start", "run"
 """What lies on each other: the starts of the programs, of the recordings, or of the runs (cycle 0)."""
 COMPARED = {
@@ -45,6 +46,60 @@ class FieldDifference:
     largest: float
     cycle: int
     parted: int
+
+
+@dataclass(frozen=True, slots=True)
+class Compared:
+    """Two recordings, A and B, on one time scale, and how far they are apart."""
+
+    pair: tuple[Recorded, Recorded]
+    found: list[FieldDifference]
+
+    @property
+    def parted(self) -> float | None:
+        """When the first set value parts, s; None if none does."""
+        cycles = [each.parted for each in self.found if each.field.startswith("set_") and each.parted >= 0]
+        return min(cycles) * self._cycle_time if cycles else None
+
+    @property
+    def alone(self) -> list[str]:
+        """Units that only one of the machines has, which cannot be compared: a sentence for each machine."""
+        units = [[topic.removeprefix("/").removesuffix("/state") for topic in each.states] for each in self.pair]
+        return [
+            f"Only {letter} has {', '.join(own)}."
+            for letter, one, other in zip(LETTERS, units, units[::-1], strict=True)
+            if (own := [unit for unit in one if unit not in other])
+        ]
+
+    def lines(self, units: dict[str, str]) -> list[str]:
+        """What there is to say in short; `units`: mm or deg by axis."""
+        largest: dict[str, FieldDifference] = {}
+        for each in self.found:
+            measure = measure_of(each, units)
+            if each.largest and (measure not in largest or each.largest > largest[measure].largest):
+                largest[measure] = each
+        texts = [
+            f"{each.largest:.6g} {measure} ({each.unit} {each.field.replace('_', ' ')} at "
+            f"{each.cycle * self._cycle_time:.3f} s)"
+            for measure, each in largest.items()
+        ]
+        apart = (
+            f"B − A: at most {', '.join(texts)}" if texts else "B − A: no difference in the values that are compared"
+        )
+        parted = "set values never part" if self.parted is None else f"set values part at {self.parted:.3f} s"
+        if not self.found:
+            return ["A and B have no cycle in common", *self.alone]
+        return [f"{apart}; {parted}", " ".join(self.alone)] if self.alone else [f"{apart}; {parted}"]
+
+    @property
+    def _cycle_time(self) -> float:
+        return self.pair[0].cycle_time_ns * 1e-9
+
+
+def compared(first: Recorded, second: Recorded, align: str = PROGRAM) -> Compared:
+    """Both as the machine file lists their units; `align`: see `aligned`, whose errors it raises."""
+    pair = aligned(in_machine_order(first), in_machine_order(second), align)
+    return Compared(pair, list(differences(*pair)))
 
 
 def aligned(first: Recorded, second: Recorded, align: str = PROGRAM) -> tuple[Recorded, Recorded]:

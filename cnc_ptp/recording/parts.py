@@ -36,7 +36,7 @@ class PartsFolder:
         self._parts: list[dict[str, Any]] = []
         try:
             folder.mkdir(exist_ok=True)
-            for old in [*numbered_parts(folder, folder.stem), folder / FILE]:
+            for old in files_in(folder):
                 old.unlink(missing_ok=True)
         except OSError as error:
             raise CncError(
@@ -55,6 +55,40 @@ class PartsFolder:
         """A part was closed; `information` as bag_information has it."""
         self._parts.append({**information, "relative_file_paths": [part.name]})
         write_folder(self._folder, self._parts)
+
+
+def files_in(folder: Path) -> list[Path]:
+    """The parts of a folder, also one that is missing, and its `metadata.yaml`."""
+    return [*numbered_parts(folder, folder.stem), folder / FILE]
+
+
+def replace_parts(new: Path, folder: Path) -> None:
+    """Moves a folder of parts to the name `folder`: there its files take the place of parts that are there already.
+
+    The former ones are put beside the new ones first. After an error, or an interruption, they are where they were.
+    """
+    if not folder.exists():
+        new.rename(folder)
+        return
+    former = new.with_name(f"former.{new.name}")
+    former.mkdir()
+    moved: list[tuple[Path, Path]] = []
+    try:
+        for old in [file for file in files_in(folder) if file.exists()]:
+            _move(old, former / old.name, moved)
+        for part in sorted(new.iterdir()):
+            _move(part, folder / part.name, moved)
+    except BaseException:
+        for was, now in reversed(moved):
+            if now.exists():
+                now.rename(was)
+        raise
+
+
+def _move(file: Path, target: Path, moved: list[tuple[Path, Path]]) -> None:
+    """Noted before it is done, so that nothing is forgotten when it is interrupted."""
+    moved.append((file, target))
+    file.rename(target)
 
 
 def numbered_parts(folder: Path, stem: str, first: int = 0) -> Iterator[Path]:

@@ -22,7 +22,7 @@ from cnc_ptp.recording.mcap_file import METADATA, MISSING
 from cnc_ptp.recording.origin import notes_of
 from cnc_ptp.recording.parts import files_of
 from cnc_ptp.recording.writer import CHECKPOINT, CHECKPOINT_TEXT, MACHINE_FILE
-from cnc_ptp.wire.layout import Layout, Records, fixed_layout
+from cnc_ptp.wire.layout import Bytes, Layout, Records, fixed_layout
 from cnc_ptp.wire.schemas import full_name, parse_schema
 
 AXIS_STATE = "cnc_ptp/msg/AxisState"
@@ -155,6 +155,11 @@ class Recorded:
         return max((int(rows["cycle"].max()) for rows in self.states.values()), default=-1)
 
     @property
+    def longest(self) -> int:
+        """The largest number of states of a unit."""
+        return max((len(rows) for rows in self.states.values()), default=0)
+
+    @property
     def block_cycles(self) -> int:
         """Cycles of a block, as most ticks have it; 10 where no ticks were recorded."""
         if self.ticks is None or len(self.ticks) == 0:
@@ -180,8 +185,12 @@ def read_recording(path: str | Path) -> Recorded:
 
     Raises CncError 26001 to 26005 (see McapRecords, schemas), 26014 and 26016.
     """
-    reader = Reader(Path(path))
-    for file in files_of(Path(path)):
+    return read_with(Reader(Path(path)))
+
+
+def read_with(reader: Reader) -> Recorded:
+    """What a reader makes of the files of its path, one after another."""
+    for file in files_of(reader.recorded.path):
         records = McapRecords(file)
         reader.begin(records)
         for record in records:
@@ -195,7 +204,7 @@ def topics_of(path: str | Path) -> dict[str, TopicInfo]:
     by_name: dict[str, TopicInfo] = {}
     for file in files_of(Path(path)):
         records = McapRecords(file)
-        names = _Names(records, by_name)
+        names = Names(records, by_name)
         for record in records:
             names.take(record)
             for item in records.in_chunk(record) if record.opcode == Opcode.CHUNK else ():
@@ -227,11 +236,11 @@ def iter_messages(path: str | Path, topics: Collection[str] | None = None) -> It
         yield heapq.heappop(waiting)[2]
 
 
-def _all_records(path: Path) -> Iterator[tuple[McapRecords, _Names, RawRecord]]:
+def _all_records(path: Path) -> Iterator[tuple[McapRecords, Names, RawRecord]]:
     """Of a file, or of the parts of a folder one after another."""
     for file in files_of(path):
         records = McapRecords(file)
-        names = _Names(records, {})
+        names = Names(records, {})
         yield from ((records, names, record) for record in records)
 
 
@@ -240,7 +249,7 @@ def _raw_messages(info: TopicInfo, run: MessageRun) -> Iterator[RawMessage]:
         yield RawMessage(info.topic, info.type_name, time, content.tobytes())
 
 
-class _Names:
+class Names:
     """Schemas and channels of a file as they are read."""
 
     def __init__(self, records: RecordReader, by_name: dict[str, TopicInfo]) -> None:
@@ -280,7 +289,7 @@ class Reader:
     """Collects the contents of the records of files, one after another."""
 
     records: RecordReader
-    names: _Names
+    names: Names
     _decoders: DecoderFactory
 
     def __init__(self, path: Path) -> None:
@@ -289,7 +298,7 @@ class Reader:
         self._notes: list[dict[str, str]] = []
         self.recorded = Recorded(path)
         self._layouts: dict[str, Layout] = {}
-        self._rows: dict[str, list[npt.NDArray[np.uint8]]] = {}
+        self._rows: dict[str, list[Bytes]] = {}
         self._handlers: dict[str, Callable[[int, str, Any], None]] = {
             EVENT: self._event,
             COMMAND: self._command,
@@ -300,7 +309,7 @@ class Reader:
     def begin(self, records: RecordReader) -> None:
         """The records that come are those of another file."""
         self.records = records
-        self.names = _Names(records, self._by_name)
+        self.names = Names(records, self._by_name)
         self._decoders = DecoderFactory()  # it knows schemas by their number in the file
 
     def end_of_file(self, missing: str) -> None:
@@ -371,7 +380,13 @@ class Reader:
                 f"a message of {info.topic} has {run.contents.shape[1]} bytes instead of {layout.dtype.itemsize} "
                 f"({info.type_name} with empty frame_id)",
             )
-        self._rows.setdefault(info.topic, []).append(run.contents)
+        self.keep(info, layout, run.contents)
+
+    def keep(self, info: TopicInfo, _layout: Layout, contents: Bytes) -> None:
+        """Takes messages (n, size) whose numbers lie at fixed places."""
+        if info.type_name == TICK:
+            contents = contents.copy()  # much else is in their chunk
+        self._rows.setdefault(info.topic, []).append(contents)
 
     def _decode(self, info: TopicInfo, run: MessageRun, record: RawRecord) -> None:
         decoder = self._decoders.decoder_for("cdr", self._schema(run))

@@ -5,7 +5,9 @@ from __future__ import annotations
 import os
 import struct
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
+from errno import EEXIST
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -20,9 +22,10 @@ from cnc_ptp.recording.mcap_chunks import KNOWN_OPCODES, MessageRun, RawRecord, 
 from cnc_ptp.recording.mcap_file import METADATA, MISSING, NOT_WRITTEN, RECORD_PREFIX, McapFile
 from cnc_ptp.recording.mcap_index import McapIndex
 from cnc_ptp.recording.origin import WITHOUT
-from cnc_ptp.recording.parts import PartsFolder, files_of, information_of
+from cnc_ptp.recording.parts import NO_FOLDER, PartsFolder, files_of, information_of, replace_parts
 
 NOTHING_SAVED = 26224
+NOTHING_WRITTEN = "nothing was written"
 
 
 @dataclass
@@ -36,38 +39,68 @@ class Recovered:
 def recover(source: str | Path, output: str | Path) -> Recovered:
     """Writes whole records of `source`, chunk by chunk, to `output`; chunks that are damaged are left out.
 
-    A folder of parts becomes a folder of parts, without those of which nothing can be read. A file that is there is
-    unchanged until all is written. Raises CncError 26001, 26002, 26007, 26014, 26224 (nothing can be saved); of a
-    folder 26020, and 26001 or 26002 when no part can be read.
+    A folder of parts becomes a folder of parts, without those of which nothing can be read. What is there under the
+    name of `output` is unchanged until all is written; of a folder its parts are replaced, other files stay. Raises
+    CncError 26001, 26002, 26007 (not written), 26014, 26224 (nothing can be saved); of a folder 26020, and 26001 or
+    26002 when no part can be read.
     """
     path, new = Path(source), Path(output)
     if not path.is_file() or path.name == FILE:
-        return _recover_parts(files_of(path), new)
+        return _recover_parts(path, new)
+    target = Path(os.path.realpath(new))
     try:
-        with TemporaryDirectory(prefix=".part.", dir=new.parent) as folder:
-            part = Path(folder) / new.name
+        with _beside(target, new) as part:
             recovered = _recover_file(path, part)
             require_something(path, recovered)
-            os.replace(part, os.path.realpath(new))
+            os.replace(part, target)
     except OSError as error:
-        raise CncError(
-            NOT_WRITTEN, f"recording {new}: cannot be created: {error.strerror}", "nothing is recorded"
-        ) from error
+        reason = f"recording {new}: cannot be created: {error.strerror}"
+        raise CncError(NOT_WRITTEN, reason, NOTHING_WRITTEN) from error
     write_beside(new, information_of(new))
     return recovered
+
+
+@contextmanager
+def _beside(target: Path, output: Path) -> Iterator[Path]:
+    """The name of `target` in a folder beside it, which is removed at the end: what is written there has to be moved.
+
+    Raises CncError 26007 of `output` where there is no room for it, OSError where there can be no folder.
+    """
+    with TemporaryDirectory(prefix=".part.", dir=target.parent) as folder:
+        try:
+            yield Path(folder) / target.name
+        except CncError as error:
+            if error.number != NOT_WRITTEN:
+                raise
+            why = error.reason.rpartition(": ")[2]
+            raise CncError(NOT_WRITTEN, f"recording {output}: cannot be written: {why}", NOTHING_WRITTEN) from error
 
 
 def require_something(path: Path, recovered: Recovered) -> None:
     """Raises CncError 26224."""
     if not recovered.messages:
         why = "".join(f"; {text}" for text in recovered.lost)
-        raise CncError(
-            NOTHING_SAVED, f"recording {path}: holds no message that can be saved{why}", "nothing was written"
-        )
+        raise CncError(NOTHING_SAVED, f"recording {path}: holds no message that can be saved{why}", NOTHING_WRITTEN)
 
 
-def _recover_parts(parts: list[Path], output: Path) -> Recovered:
+def _recover_parts(source: Path, output: Path) -> Recovered:
     """`lost` names the part."""
+    parts = files_of(source)
+    target = Path(os.path.realpath(output))
+    try:
+        with _beside(target, output) as new:
+            if target.exists() and not target.is_dir():
+                raise FileExistsError(EEXIST, os.strerror(EEXIST))
+            whole = _write_parts(parts, new)
+            require_something(source, whole)
+            replace_parts(new, target)
+    except OSError as error:
+        reason = f"recording {output}: no folder for its parts: {error.strerror}"
+        raise CncError(NO_FOLDER, reason, NOTHING_WRITTEN) from error
+    return whole
+
+
+def _write_parts(parts: list[Path], output: Path) -> Recovered:
     readable: list[tuple[Path, list[str]]] = []
     whole, gap = Recovered(), list[str]()
     for part in parts:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,15 @@ from cnc_ptp.protocol.blocks import ChannelBlock, CycleBlock, PlcBlock
 from cnc_ptp.recording.blocks import Cycles, StateBlock, StateKind, block_rows, fill_states, kind_of, thread_kind
 from cnc_ptp.recording.origin import RECORD_WHEN, require_computable
 from cnc_ptp.recording.reader import Recorded
+from cnc_ptp.recording.stored_states import (
+    Interval,
+    StoredRecording,
+    StoredStates,
+    cycles_of,
+    intervals_of,
+    joined_intervals,
+    without,
+)
 from cnc_ptp.recording.writer import topic_of
 from cnc_ptp.wire.block_codec import codec_of
 from cnc_ptp.wire.layout import Layout, Records
@@ -145,10 +155,8 @@ def verify(recorded: Recorded, replay: Replay) -> VerifyResult:
             "it cannot be verified, record it with cnc_ptp",
         )
     require_computable(recorded.path, recorded.metadata)
-    checks = {topic: _Check(topic, rows, recorded) for topic, rows in recorded.states.items()}
-    threads = {topic_of(name, "thread"): rows for name, rows in recorded.threads.items()}
-    checks |= {topic: _Check(topic, rows, recorded) for topic, rows in threads.items()}
-    without: set[str] = set()
+    checks = {topic: _Check(topic, states, recorded) for topic, states in stored_states(recorded).items()}
+    lacking: set[str] = set()
     for name, block in replay(recorded):
         if isinstance(block, PlcBlock):
             continue
@@ -159,13 +167,21 @@ def verify(recorded: Recorded, replay: Replay) -> VerifyResult:
         if isinstance(block, ChannelBlock) and block.thread_lead:
             check = checks.get(topic_of(topic.removesuffix("/state"), "thread"))
             if check is None:
-                without.add(topic)
+                lacking.add(topic)
             else:
                 check.add(block, thread_kind())
     results = {topic: check.finish() for topic, check in checks.items()}
-    for topic in without:
+    for topic in lacking:
         results[topic].not_recorded.append(topic_of(topic.removesuffix("/state"), "thread"))
     return VerifyResult(str(recorded.path), results)
+
+
+def stored_states(recorded: Recorded) -> dict[str, StoredStates]:
+    """Those of units and threads by topic, wherever they are."""
+    if isinstance(recorded, StoredRecording):
+        return recorded.stored | recorded.stored_threads
+    rows = recorded.states | {topic_of(name, "thread"): rows for name, rows in recorded.threads.items()}
+    return {topic: StoredStates.of_rows(each) for topic, each in rows.items()}
 
 
 def state_topic(name: str) -> str:
@@ -176,18 +192,14 @@ def state_topic(name: str) -> str:
 class _Check:
     """Compares the states of one topic batch by batch."""
 
-    def __init__(self, topic: str, rows: Records | None, recorded: Recorded) -> None:
+    def __init__(self, topic: str, states: StoredStates | None, recorded: Recorded) -> None:
         self.result = TopicResult(topic)
         self.recorded = recorded
         self.stamps = Stamps(recorded.start_ns, recorded.cycle_time_ns)
-        self.rows = rows
-        self.cycles = np.empty(0, dtype=np.uint64)
-        if rows is not None:
-            order = np.argsort(rows["cycle"], kind="stable")
-            self.rows = rows[order]
-            self.cycles = self.rows["cycle"]
-            self.result.duplicated = np.unique(self.cycles[1:][self.cycles[1:] == self.cycles[:-1]]).tolist()
-        self.seen = np.zeros(len(self.cycles), dtype=bool)
+        self.states = states
+        if states is not None:
+            self.result.duplicated = cycles_of(states.repeated())
+        self.computed: list[Interval] = []
         self.batch: list[bytes] = []
         self.form: tuple[StateKind, Layout] | None = None
 
@@ -206,13 +218,14 @@ class _Check:
 
     def finish(self) -> TopicResult:
         self.compare_batch()
-        self.result.surplus = np.unique(self.cycles[~self.seen]).tolist()
+        if self.states is not None:
+            self.result.surplus = cycles_of(without(self.states.intervals(), self.computed))
         return self.result
 
     def require_fields(self, kind: StateKind) -> None:
-        if self.rows is None:
+        if self.states is None:
             return
-        recorded, computed = self.rows.dtype.names or (), kind.layout.dtype.names or ()
+        recorded, computed = self.states.dtype.names or (), kind.layout.dtype.names or ()
         if unknown := [name for name in recorded if name not in computed]:
             raise CncError(
                 NOT_VERIFIABLE,
@@ -236,23 +249,23 @@ class _Check:
     def compare(self, computed: Records) -> None:
         """`computed`: rows in the order of their cycles."""
         cycles: Cycles = computed["cycle"]
-        begin, end = np.searchsorted(self.cycles, cycles[0], "left"), np.searchsorted(self.cycles, cycles[-1], "right")
-        here = self.cycles[begin:end]
+        self.computed = [*joined_intervals(sorted(chain(self.computed, intervals_of(cycles))))]
+        recorded = None if self.states is None else self.states.rows(int(cycles[0]), int(cycles[-1]))
+        here = cycles[:0] if recorded is None else recorded["cycle"]
         partner = np.minimum(np.searchsorted(cycles, here), len(cycles) - 1)
         matched = np.flatnonzero(cycles[partner] == here)
-        self.seen[begin + matched] = True
         self.note_missing(cycles[~np.isin(cycles, here)])
         self.result.compared += len(matched)
-        if self.rows is not None and len(matched):
-            self.compare_rows(self.rows[begin:end][matched], computed[partner[matched]])
+        if recorded is not None and len(matched):
+            self.compare_rows(recorded[matched], computed[partner[matched]])
 
     def note_missing(self, cycles: Cycles) -> None:
         """Not those before a trigger, and behind the end of a file that was cut off."""
         if RECORD_WHEN in self.recorded.metadata:
-            first = int(self.cycles[0]) if len(self.cycles) else np.iinfo(np.int64).max
+            first = self.states.first if self.states else np.iinfo(np.int64).max
             cycles = cycles[cycles.astype(np.int64) >= first]
         if not self.recorded.complete:
-            last = int(self.cycles[-1]) if len(self.cycles) else -1
+            last = self.states.last if self.states else -1
             cycles = cycles[cycles.astype(np.int64) <= last]
         self.result.missing.extend(cycles.tolist())
 

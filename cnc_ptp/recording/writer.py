@@ -6,7 +6,7 @@ passed.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from itertools import groupby
 from pathlib import Path
@@ -94,7 +94,7 @@ class _Topic:
         self.channel_id = channel_id
         self.type_names = (type_name, full_name(type_name))
         self.runs: list[tuple[_Encoder, list[Any]]] = []
-        self.has_states = False
+        self.has_states = self.has_blocks = False
         self._encoder: _Encoder | None = None
         self._items: list[Any] = []
 
@@ -162,7 +162,8 @@ class Recording:
     `block` records a unit's block with its per-cycle states; in the graph the block arrives as bytes, for
     `encoded_block`. Chunks are closed every `chunk_seconds` of recorded time and whenever `flush_if_due` sees
     `flush_seconds` of wall time passed; then the operating system gets them. A killed process loses only what came
-    after the last ones. States of a unit have chunks of their own: who reads a column uncompresses nothing else.
+    after the last ones. States of a unit have chunks of their own: who reads a column uncompresses nothing else. So
+    have blocks: who reads commands and events uncompresses none.
 
     Errors (CncError): 26005 unknown message type, 26006 a block that does not fit its message, 26007 the file cannot be
     written, 26008 a topic with two types, 26009 the recording is closed. What was refused is not in the file; the rest
@@ -325,6 +326,7 @@ class Recording:
 
     def _unit(self, name: str, block_class: type) -> _Unit:
         blocks = self._topic(topic_of(name, "block"), f"cnc_ptp/msg/{block_class.__name__}")
+        blocks.has_blocks = True
         states = None if block_class is PlcBlock else partial(self._states_topic, name)
         if states is not None:
             states(kind_of(block_class))
@@ -395,16 +397,22 @@ class Recording:
             topic.channel_id = self._announce(name, topic.type_names[1])
 
     def _close_chunk(self) -> None:
-        """A chunk of what the run can be computed from, then one for the states of each unit."""
+        """A chunk of commands and all that is rare, one of the blocks, then one for the states of each unit.
+
+        Who computes the run again reads the commands of hours, and then blocks of some seconds.
+        """
         self._file.finish_chunks()
-        states = [topic for topic in self._topics.values() if topic.has_states]
-        for topic in self._topics.values():
-            if not topic.has_states:
-                self._hand_over(topic)
-        self._file.close_chunk()
+        topics = [*self._topics.values()]
+        states = [topic for topic in topics if topic.has_states]
+        self._write_chunk([topic for topic in topics if not (topic.has_states or topic.has_blocks)])
+        self._write_chunk([topic for topic in topics if topic.has_blocks])
         for topic in states:
+            self._write_chunk([topic])
+
+    def _write_chunk(self, topics: Sequence[_Topic]) -> None:
+        for topic in topics:
             self._hand_over(topic)
-            self._file.close_chunk()
+        self._file.close_chunk()
 
     def _hand_over(self, topic: _Topic) -> None:
         runs = topic.take()[::-1]

@@ -71,7 +71,7 @@ def compute(job: Job, variant: Variant) -> Row:
     except Failure as failure:
         return failed(job, variant, failure.number, failure.text)
     except CncError as error:
-        return failed(job, variant, error.number, error.message)
+        return failed(job, variant, error.number, error.meaning("the variant was not computed").message)
     except Exception as error:
         return failed(job, variant, BROKEN_OFF, f"the run broke off, {type(error).__name__}: {error}")
 

@@ -1,6 +1,7 @@
 """Every topic runs in its shortest form; what it measures is not judged."""
 
 import math
+import re
 from pathlib import Path
 
 import pytest
@@ -20,6 +21,7 @@ from bench import (
     spindles,
     streaming,
     sweep,
+    what_if,
 )
 from bench.figures import Effort
 from bench.graph_run import SUPERVISOR, GraphRun, Watch, node_name, run_graph
@@ -41,6 +43,14 @@ def test_topic_yields_figures(topic) -> None:
     assert said
     assert len({figure.name for figure in figures}) == len(figures) >= 2
     assert all(math.isfinite(figure.value) and figure.unit for figure in figures)
+
+
+def test_a_what_if_begins_in_the_middle_of_commands() -> None:
+    said: list[str] = []
+    figures = [*what_if.figures(Effort(runs=1, size=0.01, graph_seconds=1.0), said.append)]
+    assert said and all(math.isfinite(figure.value) and figure.value > 0.0 for figure in figures)
+    [started] = [figure for figure in figures if figure.goal is not None]
+    assert re.search(r"of 8 axes with \d\d commands", started.name)
 
 
 def test_the_session_of_a_client_is_carried_out() -> None:

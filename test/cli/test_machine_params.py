@@ -126,9 +126,9 @@ def test_missing_files(command: list[str]) -> None:
     [
         (
             "",
-            "P-ERR-25003 {}:1:1: section /machine is missing, it says which channels, axes and spindles exist; the node does not start",
+            "P-ERR-25003 {}:1:1: section /machine is missing, it says which channels, axes and spindles exist; no parameters were read",
         ),
-        ("- a", "P-ERR-25001 {}:1:1: a machine file is a mapping of node names; the node does not start"),
+        ("- a", "P-ERR-25001 {}:1:1: a machine file is a mapping of node names; no parameters were read"),
     ],
 )
 def test_a_file_that_is_no_machine(tmp_path: Path, text: str, error: str) -> None:

@@ -9,9 +9,9 @@ from recording_support import smooth_run
 
 from cnc_ptp.commands.look.report import report
 from cnc_ptp.errors import CncError
-from cnc_ptp.plots.comparison import compared_rows, comparison_page, merged
+from cnc_ptp.plots.comparison import compared_rows, comparison_page, merged, page_of
 from cnc_ptp.protocol.blocks import CommandRecord
-from cnc_ptp.recording.difference import aligned, differences, parameter_differences, program_start
+from cnc_ptp.recording.difference import aligned, compared, differences, parameter_differences, program_start
 from cnc_ptp.recording.long_recording import read_for_report
 from cnc_ptp.recording.reader import read_recording
 
@@ -121,6 +121,26 @@ def test_equal_recordings(first):
     assert "<h2>Program</h2>" not in page
 
 
+def test_what_there_is_to_say_in_short(first, second):
+    assert compared(first, second).lines({"y": "deg"}) == [
+        "B − A: at most 0.75 mm (x set position at 1.200 s); set values part at 0.800 s"
+    ]
+    assert compared(first, first).lines({}) == [
+        "B − A: no difference in the values that are compared; set values never part"
+    ]
+    for rows in second.states.values():
+        rows["cycle"] += np.uint64(10_000)
+    assert compared(first, second, "run").lines({}) == ["A and B have no cycle in common"]
+
+
+def test_units_that_only_one_has_are_named(first, second):
+    del second.states["/y/state"], second.states["/z/state"], first.states["/s/state"]
+    both = compared(first, second)
+    assert both.lines({})[1:] == ["Only A has y, z. Only B has s."]
+    assert '<p class="warn">Only A has y, z. Only B has s.</p>' in page_of(both)
+    assert '<p class="warn">' not in comparison_page(first, first)
+
+
 def test_parameters_without_a_readable_machine_file(first, second):
     first.machine_yaml, second.machine_yaml = "[", "/x: {ros__parameters: {a: 1}}"
     assert parameter_differences(first, second) == [("x.a", "–", "1")]
@@ -155,7 +175,10 @@ def test_a_recording_that_is_too_long(first, path):
 def test_the_command(path, tmp_path, capsys):
     output = tmp_path / "difference.html"
     assert report(str(path), str(output), 0.5, 1.0, ["x", "y"], compare=str(path), align="start") == 0
-    assert "cycles 500 to 999" in capsys.readouterr().out
+    assert capsys.readouterr().out.splitlines() == [
+        f"{output}: {output.stat().st_size / 1e6:.1f} MB, cycles 500 to 999",
+        "B − A: no difference in the values that are compared; set values never part",
+    ]
     assert "Comparison of two recordings" in output.read_text()
     with pytest.raises(CncError, match="would overwrite the other recording"):
         report(str(tmp_path / "none.mcap"), str(path), None, None, (), compare=str(path))

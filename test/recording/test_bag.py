@@ -18,7 +18,7 @@ from cnc_ptp.recording.closing import close_cut
 from cnc_ptp.recording.mcap_chunks import McapRecords
 from cnc_ptp.recording.qos import Qos, parse_profiles, profiles_text
 from cnc_ptp.recording.reader import iter_messages, read_recording, topics_of
-from cnc_ptp.recording.settings import Settings
+from cnc_ptp.recording.settings import Settings, Split
 from cnc_ptp.recording.writer import Recording
 from cnc_ptp.wire.schemas import schema_text, type_hash
 
@@ -152,6 +152,25 @@ def test_quality_of_service_of_other_bags():
     assert parse_profiles(profiles_text(Qos(7, "transient_local")), "a/msg/B") == Qos(7, "transient_local")
     for nothing in ("", "[]", "- 1", "{", "- depth: many"):
         assert parse_profiles(nothing, "cnc_ptp/msg/Jog") == Qos(10)
+
+
+@pytest.mark.parametrize("split", [None, Split(seconds=0.2)], ids=["file", "parts"])
+def test_an_independent_reader_finds_the_same(tmp_path, split):
+    """Topics, types, numbers of messages, times and bytes."""
+    path = tmp_path / "bag" / ("run" if split else "run.mcap")
+    path.parent.mkdir()
+    with Recording(path, "machine: {}", chunk_seconds=0.1, settings=Settings(split=split)) as recording:
+        for name, block in Blocks(8).machine(100):
+            recording.block(name, block)
+    topics = topics_of(path)
+    with Reader(path if split else path.parent) as bag:
+        found = {each.topic: (each.msgtype, each.msgcount) for each in bag.connections}
+        read = sorted((time, each.topic, bytes(data)) for each, time, data in bag.messages())
+        whole = bag.message_count, bag.start_time, bag.end_time
+    assert found == {topic: (info.type_name, info.count) for topic, info in topics.items()}
+    assert read == sorted((each.log_time_ns, each.topic, each.cdr) for each in iter_messages(path))
+    assert whole == (len(read), 0, max(info.last_ns for info in topics.values()) + 1)
+    assert len([*path.parent.rglob("*.mcap")]) == (5 if split else 1)
 
 
 # a recorder that died

@@ -10,8 +10,9 @@ from click.testing import CliRunner, Result
 from machine_support import ROOT
 
 from cnc_ptp import cli
+from cnc_ptp.commands.run.progress import RunProgress
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.offline import OfflineMachine
+from cnc_ptp.machine.offline import OfflineMachine, Outputs
 from cnc_ptp.machine.run_entries import read_entries
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import machine_text, read_machine
@@ -19,6 +20,7 @@ from cnc_ptp.protocol.blocks import AxisBlock
 from cnc_ptp.recording.checkpoint_file import store_checkpoints
 from cnc_ptp.recording.mcap_file import McapFile
 from cnc_ptp.recording.offline_run import write
+from cnc_ptp.recording.reader import read_recording
 from cnc_ptp.recording.run_inputs import RunInputs
 from cnc_ptp.recording.writer import Recording
 from cnc_ptp.state import machine_state
@@ -186,3 +188,20 @@ def test_a_run_that_is_too_short_for_a_checkpoint(tmp_path: Path) -> None:
         "written, choose a shorter time",
     )
     assert not Path(f"{path}.checkpoints").exists()
+
+
+def test_long_replays_show_their_progress(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shown: list[int] = []
+
+    class Watched(RunProgress):
+        def show_block(self, outputs: Outputs) -> None:
+            shown.append(outputs["x"].block.first_cycle)
+
+    for module in ("replay", "what_if"):
+        monkeypatch.setattr(f"cnc_ptp.commands.run.{module}.RunProgress", Watched)
+    path = simulated(tmp_path / "run.mcap")
+    every = [*range(0, read_recording(path).last_cycle + 1, 10)]
+    for words in ((), ("--checkpoints", 1), ("--from", 0, "-o", tmp_path / "new.mcap")):
+        shown.clear()
+        assert call("replay", path, *words).exit_code == 0
+        assert shown == every

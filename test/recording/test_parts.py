@@ -1,5 +1,6 @@
 """Recordings in parts, compression, and what files say of themselves. rosbags is the reader of another hand."""
 
+import pkgutil
 import shutil
 import subprocess
 
@@ -9,9 +10,9 @@ import yaml
 from click.testing import CliRunner
 from machine_support import PTP, ROOT
 from mcap.reader import make_reader
-from mcap_ros2.writer import Writer
-from recording_support import MACHINE, Blocks, record
+from recording_support import MACHINE, Blocks, foreign_file, record
 from rosbags.rosbag2 import Reader
+from small_disk import small_disk
 
 import cnc_ptp.recording
 from cnc_ptp.cli import main
@@ -288,6 +289,92 @@ def test_parts_are_not_recovered_into_themselves_and_not_without_one_that_is_rea
     assert not (tmp_path / "saved").exists()
 
 
+def contents(folder):
+    return {file.name: file.read_bytes() for file in folder.iterdir()}
+
+
+def saved_before(folder):
+    """A folder of two parts, with a file that is none."""
+    with Recording(folder, MACHINE, settings=Settings(split=Split(seconds=0.01)), chunk_seconds=0.01) as recording:
+        for first in (0, 10):
+            recording.tick(CycleTick(first, 10))
+            recording.flush()
+    (folder / "notes.txt").write_text("good")
+    return contents(folder)
+
+
+def test_parts_without_a_message_are_refused_like_a_file(tmp_path):
+    empty, output = tmp_path / "empty", tmp_path / "saved"
+    with Recording(empty, MACHINE, settings=Settings(split=Split(seconds=1.0))):
+        pass
+    before = saved_before(output)
+    assert refusal(recover, empty, output) == (
+        f"P-ERR-26224 recording {empty}: holds no message that can be saved; nothing was written"
+    )
+    assert refusal(recover, empty, tmp_path / "new") == (
+        f"P-ERR-26224 recording {empty}: holds no message that can be saved; nothing was written"
+    )
+    assert contents(output) == before and sorted(each.name for each in tmp_path.iterdir()) == ["empty", "saved"]
+
+
+def test_recovered_parts_take_the_place_of_former_ones(parts, tmp_path):
+    output = tmp_path / "saved"
+    saved_before(output)
+    (tmp_path / "link").symlink_to(output)
+    recover(parts, tmp_path / "link")
+    assert equal(states_of(parts), states_of(output))
+    assert sorted(contents(output)) == ["metadata.yaml", "notes.txt", *(f"saved_{n}.mcap" for n in range(4))]
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["link", "saved"]
+
+
+@pytest.mark.parametrize("place", ["recovery._recover_file", "parts._move"])
+@pytest.mark.parametrize("calls", [0, 1, 3])
+@pytest.mark.parametrize("error", [KeyboardInterrupt, OSError(5, "Input/output error")], ids=repr)
+def test_an_interruption_leaves_what_is_there(parts, tmp_path, monkeypatch, place, calls, error):
+    output = tmp_path / "saved"
+    before = saved_before(output)
+    name = f"cnc_ptp.recording.{place}"
+    inside, left = pkgutil.resolve_name(name.replace("._", ":_")), [None] * calls
+
+    def broken(*arguments):
+        if not left:
+            raise error
+        left.pop()
+        return inside(*arguments)
+
+    monkeypatch.setattr(name, broken)
+    if error is KeyboardInterrupt:
+        with pytest.raises(KeyboardInterrupt):
+            recover(parts, output)
+    else:
+        assert refusal(recover, parts, output) == (
+            f"P-ERR-26020 recording {output}: no folder for its parts: Input/output error; nothing was written"
+        )
+    assert contents(output) == before
+    assert [each.name for each in tmp_path.iterdir()] == ["saved"]
+
+
+def test_a_disk_that_is_full_leaves_what_is_there(parts, tmp_path):
+    with small_disk(tmp_path / "disk", 64) as disk:
+        output = disk / "saved"
+        before = saved_before(output)
+        assert refusal(recover, parts, output) == (
+            f"P-ERR-26007 recording {output}: cannot be written: No space left on device; nothing was written"
+        )
+        assert contents(output) == before and [each.name for each in disk.iterdir()] == ["saved"]
+    text = "recording {}: {}: {}; nothing was written"
+    good = tmp_path / "good"
+    good.write_text("good")
+    for source, output, number, what, reason in (
+        (parts, good, 26020, "no folder for its parts", "File exists"),
+        (parts, tmp_path / "none" / "saved", 26020, "no folder for its parts", "No such file or directory"),
+        (parts / "run_0.mcap", tmp_path / "none" / "a.mcap", 26007, "cannot be created", "No such file or directory"),
+        (parts / "run_0.mcap", tmp_path / "disk", 26007, "cannot be created", "Is a directory"),
+    ):
+        assert refusal(recover, source, output) == f"P-ERR-{number} {text.format(output, what, reason)}"
+    assert good.read_text() == "good"
+
+
 def test_parts_of_which_the_last_was_cut_at_any_byte(tmp_path):
     """The recorder was killed: the last part ends anywhere, the `metadata.yaml` lists the part before."""
     folder = tmp_path / "run"
@@ -415,36 +502,8 @@ def test_recordings_without_a_format_are_the_oldest(tmp_path):
     assert read_recording(path).complete
 
 
-def foreign(path):
-    with path.open("wb") as stream:
-        writer = Writer(stream)
-        schema = writer.register_msgdef("geometry_msgs/msg/Point", "float64 x\nfloat64 y\nfloat64 z")
-        for number in range(20):
-            time = number * 100_000_000
-            writer.write_message("/point", schema, {"x": number / 2, "y": 1.0, "z": 0.0}, time, time, number)
-        writer.finish()
-    return path
-
-
-def test_mcap_files_of_other_programs(tmp_path):
-    path = foreign(tmp_path / "foreign.mcap")
-    answers = {
-        ("report", "-o", "page.html"): f"P-ERR-26017 recording {path}: is not of cnc_ptp; nothing was drawn; "
-        "`cnc_ptp export` reads its topics",
-        (
-            "replay",
-        ): f"P-ERR-26004 recording {path}: holds no attachment machine.yaml; it cannot be verified, record it "
-        "with cnc_ptp",
-        (
-            "plot",
-            "x/set_velocity",
-            "-o",
-            "a.svg",
-        ): f"P-ERR-26011 recording {path}: holds no unit 'x' with states; there are none; nothing was drawn",
-    }
-    for (name, *words), text in answers.items():
-        result = CliRunner().invoke(main, [name, str(path), *words])
-        assert (result.exit_code, " ".join(result.stderr.split())) == (2, text), name
+def test_topics_of_other_programs_are_read(tmp_path):
+    path = foreign_file(tmp_path / "foreign.mcap")
     with cnc_ptp.recording.open(path) as opened:
         assert opened.columns("/point")["x"].tolist() == [number / 2 for number in range(20)]
     table = tmp_path / "point.csv"

@@ -66,15 +66,22 @@ def test_statistics_index_and_crcs_are_those_of_the_library(path, blocks):
         assert reader.get_header().profile == "ros2"
     statistics = summary.statistics
     assert statistics.message_count == 120 * 6 + 1200 * 4 + 2 == sum(statistics.channel_message_counts.values())
-    assert (statistics.chunk_count, statistics.attachment_count, statistics.metadata_count) == (25, 1, 2)
+    assert (statistics.chunk_count, statistics.attachment_count, statistics.metadata_count) == (30, 1, 2)
     assert (statistics.channel_count, statistics.schema_count) == (12, 10)
     assert (statistics.message_start_time, statistics.message_end_time) == (0, 1_199_000_000)
     ranges = [(chunk.message_start_time, chunk.message_end_time) for chunk in summary.chunk_indexes]
     names = {channel.id: channel.topic for channel in summary.channels.values()}
-    own = [{names[id] for id in chunk.message_index_offsets} for chunk in summary.chunk_indexes[1:5]]
-    assert own == [{"/channel/state"}, {"/x/state"}, {"/y/state"}, {"/s/state"}]
-    assert ranges[1::5] == ranges[2::5] == ranges[4::5]
-    assert ranges[1::5] == [
+    own = [{names[id] for id in chunk.message_index_offsets} for chunk in summary.chunk_indexes[:6]]
+    assert own == [
+        {"/clock/tick", "/events", "/commands"},
+        {f"/{unit}/block" for unit in ("plc", "channel", "x", "y", "s")},
+        {"/channel/state"},
+        {"/x/state"},
+        {"/y/state"},
+        {"/s/state"},
+    ]
+    assert ranges[2::6] == ranges[3::6] == ranges[5::6]
+    assert ranges[2::6] == [
         (0, 249_000_000),
         (250_000_000, 499_000_000),
         (500_000_000, 749_000_000),

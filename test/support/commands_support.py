@@ -1,5 +1,8 @@
 """Helpers of the tests of the commissioning commands: machines, calls, synthetic recordings."""
 
+import socket
+import subprocess
+import sys
 from pathlib import Path
 
 import yaml
@@ -34,6 +37,15 @@ OF_THE_BLOCK = (
 
 def call(*arguments):
     return CliRunner().invoke(cli.main, [str(argument) for argument in arguments])
+
+
+def served(recording):
+    """The finished command `web`, that has refused a recording."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    words = [sys.executable, "-m", "cnc_ptp", "web", str(recording), "--port", str(port)]
+    return subprocess.run(words, capture_output=True, text=True, timeout=100, check=False)
 
 
 def changed_mill(path, axis, **sections):

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import plotly.graph_objects as go
+from mcap_ros2.writer import Writer
 
 from cnc_ptp.plots.report_figures import rows_figure
 from cnc_ptp.protocol.blocks import (
@@ -117,6 +118,18 @@ def record(path: Path, blocks: list[tuple[str, CycleBlock]], **options: float) -
             if name == "plc":
                 recording.tick(CycleTick(block.first_cycle, block.count))
             recording.block(name, block)
+
+
+def foreign_file(path: Path) -> Path:
+    """An MCAP file of another program: 20 points in 2 s."""
+    with path.open("wb") as stream:
+        writer = Writer(stream)
+        schema = writer.register_msgdef("geometry_msgs/msg/Point", "float64 x\nfloat64 y\nfloat64 z")
+        for number in range(20):
+            time = number * 100_000_000
+            writer.write_message("/point", schema, {"x": number / 2, "y": 1.0, "z": 0.0}, time, time, number)
+        writer.finish()
+    return path
 
 
 SPEED = 2 * math.pi  # rad/s

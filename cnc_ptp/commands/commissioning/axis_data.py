@@ -20,7 +20,9 @@ from cnc_ptp.parameters.view.encoder import uses_feed_constant
 from cnc_ptp.parameters.view.gears import active_gear
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import Command
-from cnc_ptp.recording.reader import AXIS_STATE, Recorded, read_recording
+from cnc_ptp.recording.reader import AXIS_STATE, Recorded
+from cnc_ptp.recording.stored_states import read_columns
+from cnc_ptp.recording.writer import topic_of
 
 FIELDS = (
     "set_velocity",
@@ -110,7 +112,7 @@ def open_axis(axis: str, machine: str | None, recording: str | None) -> AxisData
 
     Raises CncError 27001, 27002, 27040 (none, or two that differ), those of reading the machine file and the recording.
     """
-    recorded = read_recording(recording) if recording is not None else None
+    recorded = None if recording is None else read_columns(recording, topic_of(axis, "state"), FIELDS)
     if machine is not None:
         text, file = complete_text(read_file("machine file", machine), machine), machine
         if recorded is not None and recorded.machine_yaml not in ("", text):
@@ -133,7 +135,8 @@ def recorded_trace(data: AxisData, recorded: Recorded) -> AxisTrace:
     """The axis in a recording. Raises CncError 27002 where it is not recorded."""
     axis, states = data.axis.name, recorded.of_type(AXIS_STATE)
     if axis not in states:
-        known = ", ".join(states) or "none"
+        topics = [topic for topic, info in recorded.topics.items() if info.type_name == AXIS_STATE]
+        known = ", ".join(topic.removeprefix("/").removesuffix("/state") for topic in topics) or "none"
         raise CncError(
             NOT_RECORDED,
             f"recording {recorded.path} holds no states of axis {axis}",

@@ -8,9 +8,9 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from cnc_ptp.commands.output_file import check_page, write_output
-from cnc_ptp.plots.comparison import comparison_page
+from cnc_ptp.plots.comparison import page_of, units_of
 from cnc_ptp.plots.report import report_page
-from cnc_ptp.recording.difference import PROGRAM
+from cnc_ptp.recording.difference import PROGRAM, compared
 from cnc_ptp.recording.long_recording import read_own
 from cnc_ptp.recording.reader import Recorded
 from cnc_ptp.recording.selection import selected
@@ -27,6 +27,7 @@ def report(
 ) -> int:
     """Writes the page, of a part if asked for, alone or against another recording; warns of one that was cut off."""
     check_page(output, recording=recording, other_recording=compare)
+    lines: list[str] = []
     whole = read_own(recording, begin, end)
     recorded = selected(whole, begin=begin, end=end, units=axes)
     made = datetime.now(tz=UTC).strftime("%Y-%m-%d %H:%M UTC")
@@ -34,11 +35,14 @@ def report(
         page = report_page(recorded, program=program_of(whole), date=made)
     else:
         other = selected(read_own(compare, begin, end), begin=begin, end=end, units=axes)
-        page = comparison_page(recorded, other, align=align, date=made)
+        both = compared(recorded, other, align)
+        page, lines = page_of(both, date=made), both.lines(units_of(both.pair))
     write_output(output, page, remains="the recording is unchanged")
     size = Path(output).stat().st_size / 1e6
     first = min((int(rows["cycle"].min()) for rows in recorded.states.values()), default=0)
     print(f"{output}: {size:.1f} MB, cycles {first} to {recorded.last_cycle}")
+    for line in lines:
+        print(line)
     if not recorded.complete:
         print(f"note: {recorded.missing}")
     return 0

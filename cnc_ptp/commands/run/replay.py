@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 
 from cnc_ptp.commands.console import RUN_FAILED
+from cnc_ptp.commands.run.progress import RunProgress
+from cnc_ptp.machine.offline import Outputs
 from cnc_ptp.parameters import load_machine
 from cnc_ptp.protocol.blocks import CycleBlock
 from cnc_ptp.recording.checkpoint_file import store_checkpoints
-from cnc_ptp.recording.computed_again import commands_by_cycle, computed_again, fresh_machine
-from cnc_ptp.recording.reader import Recorded, read_recording
+from cnc_ptp.recording.computed_again import commands_by_cycle, computed_again, fresh_machine, no_progress
+from cnc_ptp.recording.reader import Recorded
 from cnc_ptp.recording.run_inputs import RunInputs
+from cnc_ptp.recording.stored_states import read_stored
 from cnc_ptp.recording.verify import verify as verify_recording
 
 
@@ -24,8 +28,9 @@ def replay(
     """
     status = 0
     if verify or not (publish or checkpoints):
-        recorded = read_recording(recording)
-        result = verify_recording(recorded, replay_blocks)
+        recorded = read_stored(recording)
+        with RunProgress() as progress:
+            result = verify_recording(recorded, partial(replay_blocks, show=progress.show_block))
         print(result.text(), file=sys.stdout if result.equal else sys.stderr)
         if not recorded.complete:
             print(f"note: {recorded.missing}")
@@ -41,18 +46,24 @@ def replay(
 
 def print_stored(recording: str, seconds: float) -> None:
     """Writes the checkpoints and says how many."""
-    with RunInputs(recording) as recorded:
-        stored = store_checkpoints(recorded, seconds)
+    with RunInputs(recording) as recorded, RunProgress() as progress:
+        stored = store_checkpoints(recorded, seconds, progress.show_block)
     print(f"{stored.path}: {stored.number} checkpoints, {seconds:g} s from one to the next")
     if stored.fault:
         print(f"note: {stored.fault}")
 
 
-def replay_blocks(recorded: Recorded) -> Iterator[tuple[str, CycleBlock]]:
-    """Re-runs the kernel with the machine file and the commands of a recording; all blocks up to its last cycle."""
+def replay_blocks(
+    recorded: Recorded, show: Callable[[Outputs], None] = no_progress
+) -> Iterator[tuple[str, CycleBlock]]:
+    """Re-runs the kernel with the machine file and the commands of a recording; all blocks up to its last cycle.
+
+    `show` takes what was computed.
+    """
     machine = load_machine(recorded.machine_yaml, f"{recorded.path}:machine.yaml")
     commands = commands_by_cycle(recorded.commands, machine)
     for outputs in computed_again(fresh_machine(machine), commands, end_of(recorded)):
+        show(outputs)
         yield from ((name, output.block) for name, output in outputs.items())
 
 
@@ -61,7 +72,7 @@ def end_of(recorded: Recorded) -> int:
 
     the ticks, or (units continue to their standstill when the clock is lost) the number of cycles that a unit recorded.
     """
-    confirmed = max((len(rows) for rows in recorded.states.values()), default=0)
+    confirmed = recorded.longest
     if recorded.ticks is not None and len(recorded.ticks):
         confirmed = max(confirmed, int((recorded.ticks["first_cycle"] + recorded.ticks["count"]).max()))
     return min(recorded.last_cycle + 1, confirmed)

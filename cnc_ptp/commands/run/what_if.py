@@ -7,6 +7,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from cnc_ptp.commands.look.diff import check_diff_page, show_difference
+from cnc_ptp.commands.run.progress import RunProgress
 from cnc_ptp.machine.program_files import read_file, read_program
 from cnc_ptp.machine.run_entries import load_arguments, program_search
 from cnc_ptp.machine.wiring import unit_kinds
@@ -66,9 +67,13 @@ def compute(run: WhatIf, recorded: RunInputs, path: str) -> list[str]:
         )
     blocks = run.run()
     first = [*islice(blocks, 1)]  # what refuses the change does it now, before a file is overwritten
-    with Recording(path, run.machine_text, recorded.start_ns, recorded.cycle_time_ns, notes=notes) as recording:
+    with (
+        RunProgress() as progress,
+        Recording(path, run.machine_text, recorded.start_ns, recorded.cycle_time_ns, notes=notes) as recording,
+    ):
         for outputs in chain(first, blocks):
             write(recording, outputs)
+            progress.show_block(outputs)
             for record in [record for output in outputs.values() for record in output.records if not record.accepted]:
                 if (record.cycle, record.target, record.command) not in known:
                     at = record.cycle * recorded.cycle_time_ns * 1e-9
