@@ -9,10 +9,10 @@ import re
 from collections.abc import Mapping
 from typing import Final
 
+from cnc_ptp.garbage import paused_collector
 from cnc_ptp.nc import faults
 from cnc_ptp.nc.blocks import read_line
 from cnc_ptp.nc.canonical import Source
-from cnc_ptp.nc.collector import paused_collector
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow import flow_faults
 from cnc_ptp.nc.flow.declarations import declaration_of

@@ -8,10 +8,8 @@ states of its own sources only: what an attribute means is nowhere but there.
 
 from __future__ import annotations
 
-import gc
 import json
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from functools import cache
 from hashlib import blake2b
 from typing import Any, Final, NamedTuple
@@ -21,6 +19,7 @@ import zstandard
 from cnc_ptp.channel.channel_unit import ChannelUnit
 from cnc_ptp.channel.running_blocks import RunningBlocks
 from cnc_ptp.compiled.sources import hashes, sources
+from cnc_ptp.garbage import paused_collector
 from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.runner import UnitRunner
 from cnc_ptp.parameters import MachineParameters
@@ -81,23 +80,11 @@ class StateStore:
         next_cycle, root, shapes, rows = content
         if not is_part(root, ROW, len(rows)):
             raise damaged("its root is no row")
-        with without_collection():
+        with paused_collector():  # a sixth of the time
             found = Decoder(rows, shapes, self._roots, self.texts).decode(root)
         if not is_machine(found):
             raise damaged("its root does not hold units and their blocks")
         return MachineState(next_cycle, *found)
-
-
-@contextmanager
-def without_collection() -> Iterator[None]:
-    """All that is made remains: looking for garbage among it took a sixth of the time."""
-    was_on = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_on:
-            gc.enable()
 
 
 def parsed(content: bytes) -> Any:

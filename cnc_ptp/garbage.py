@@ -1,4 +1,4 @@
-"""Python's search for garbage, paused while a program is read: it would look through all blocks again and again."""
+"""Python's search for garbage, paused while much is made that remains: it would look through it again and again."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def paused_collector() -> Iterator[None]:
-    """Blocks refer to nothing that refers back to them: all of them are freed without that search."""
+    """For what refers to nothing that refers back to it, as blocks do: all of it is freed without that search."""
     was_on = gc.isenabled()
     gc.disable()
     try:
