@@ -1,8 +1,9 @@
 """Access policy of a machine for SROS2: what each node may publish, subscribe to, answer, call.
 
-`python -m cnc_ptp.nodes.access_policy MACHINE.yaml` prints it; tools/sros2/policy.xml is that of config/mill.yaml. It is
-made from the wiring, the tables of topics.py and docs/interfaces.md; a test compares it with nodes that run. Each node
-is an enclave of its own, /cnc_ptp/<node>; people and programs that command the machine share /cnc_ptp/client.
+`python -m cnc_ptp.nodes.access_policy MACHINE.yaml` prints it; tools/sros2/policy.xml is that of config/mill.yaml. It
+is made from the wiring and the tables of topics.py, as docs/interfaces.md has them; a test compares it with nodes that
+run. Each node is an enclave of its own, /cnc_ptp/<node>; people and programs that command the machine share
+/cnc_ptp/client, and a PLC outside is /cnc_ptp/external_plc.
 """
 
 from __future__ import annotations
@@ -51,7 +52,7 @@ from cnc_ptp.protocol.unit import PLC
 VERSION = "0.2.0"
 """Of the format of the policies."""
 ROSOUT, PARAMETER_EVENTS = "/rosout", "/parameter_events"
-CLIENT = "client"
+CLIENT, EXTERNAL_PLC = "client", "external_plc"
 PARAMETER_SERVICES = (
     "describe_parameters",
     "get_parameter_types",
@@ -67,7 +68,7 @@ EMERGENCY_SERVICES = tuple(f"{EMERGENCY_STOP_TOPIC}/{name}" for name in ("press"
 
 @dataclass
 class NodeAccess:
-    """What a node may do. Names as in topics.py, relative to the namespace; those with / at their beginning are absolute.
+    """What a node may do. Names as in topics.py, relative to the namespace; with / at their beginning absolute.
 
     publish, subscribe   topics
     reply, request       services that it has, and that it calls
@@ -86,7 +87,8 @@ class NodeAccess:
 def machine_access(machine: MachineParameters) -> list[NodeAccess]:
     """All nodes of a machine, and those who command it."""
     units = [unit_access(machine, unit) for unit in unit_kinds(machine)]
-    return [*units, clock_access(), recorder_access(machine), monitor_access(machine), client_access(machine, units)]
+    run = [clock_access(), recorder_access(machine), monitor_access(machine)]
+    return [*units, *run, client_access(machine, units), external_plc_access(machine)]
 
 
 def unit_access(machine: MachineParameters, unit: str) -> NodeAccess:
@@ -152,6 +154,20 @@ def client_access(machine: MachineParameters, units: Iterable[NodeAccess]) -> No
         subscribe=reads,
         request={service for node in nodes for service in node.reply},
         call={name for node in nodes for name in node.execute},
+    )
+
+
+def external_plc_access(machine: MachineParameters) -> NodeAccess:
+    """A PLC that writes the topics of the machine and reads its status."""
+    kinds = {unit: kind for unit, kind in unit_kinds(machine).items() if kind != "plc"}
+    writes = {plc_topic(unit, name) for unit, kind in kinds.items() for name in PLC_TOPICS[kind]}
+    reads = {JOINT_STATES, EVENT, f"{EMERGENCY_STOP_TOPIC}/active", *map(hli_status_topic, kinds)}
+    reads |= {handshake_topic(channel) for channel in machine.channels}
+    return NodeAccess(
+        EXTERNAL_PLC,
+        publish=writes | {LIFE_SIGN, EMERGENCY_STOP_TOPIC, TRAJECTORY_TOPIC, ROSOUT, PARAMETER_EVENTS},
+        subscribe=reads,
+        request={*EMERGENCY_SERVICES, f"{PLC}/acknowledge"},
     )
 
 
