@@ -159,9 +159,9 @@ class PlcBridgeNode(UnitNode):
         if not is_newer(message.sequence, self._sequence.get(topic, 0)):
             return
         self._sequence[topic] = message.sequence
-        if message.valid and not self._admits(Command(axis, SETPOINTS)):
-            return
         direction = message.direction if message.valid else 0
+        if direction and not self._admits(Command(axis, SETPOINTS)):
+            return
         row = [message.cycle, message.position, message.velocity, message.acceleration, direction]
         self.plc.setpoints.arrive(axis, row)
 

@@ -57,7 +57,9 @@ def test_what_stops_is_taken(client):
 def test_services_that_the_plc_answers(client):
     coupled = client.ask(srv.Couple, "/x/couple", master="y", factor=1.0)
     assert (coupled.accepted, coupled.error_id, coupled.message) == (False, 26218, refusal("couple"))
-    given = client.ask(srv.GiveExternalSetpoints, "/x/external_setpoints", setpoints=[msg.SetpointRow(direction=1)])
+    given = client.ask(
+        srv.GiveExternalSetpoints, "/x/external_setpoints", setpoints=[msg.ExternalSetpoint(direction=1)]
+    )
     assert (given.accepted, given.error_id, given.message) == (False, 26218, refusal("external_setpoints"))
 
 
