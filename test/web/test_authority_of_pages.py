@@ -1,11 +1,20 @@
 """Command authority of pages: a unit that the machine file closes to them, and one that it closes to services."""
 
+import asyncio
 from pathlib import Path
 
 import pytest
-from web_support import MILL, run
+from web_support import MILL, site
 
 PLACE = "    spindles: [s]\n"
+
+
+def run(story, **options):
+    async def told():
+        async with site(**options) as here:
+            await story(here)
+
+    asyncio.run(told())
 
 
 def closed(folder, source):
