@@ -137,7 +137,7 @@ def run_of(namespace: str) -> int:
         raise no_run(namespace)
     for process in filter(str.isdecimal, os.listdir("/proc")):
         with suppress(OSError):  # processes of others, and what has just ended
-            if os.stat(f"/proc/{process}").st_uid == os.geteuid() and has_socket(process, inode):
+            if is_own(process) and has_socket(process, inode):
                 return int(process)
     reason = f"enter: the isolated run on {place_of(namespace)} of this computer is that of another user"
     raise CncError(FOREIGN_RUN, reason, f"{NOTHING}. Only its own user enters it")
@@ -149,6 +149,16 @@ def claim_inode(name: str) -> str | None:
     with open("/proc/net/unix") as sockets:
         rows = (line.split() for line in sockets)
         return next((row[6] for row in rows if row[-1] == shown), None)
+
+
+def is_own(process: str) -> bool:
+    """It runs as this user. Its files in /proc do not say so: those of a process may be root's, whoever's it is.
+
+    Nobody is to be lured into the namespaces of somebody else, in which all files may be others. Raises OSError.
+    """
+    with open(f"/proc/{process}/status") as status:
+        users = next(line.split()[1:] for line in status if line.startswith("Uid:"))
+    return {*users} == {str(os.geteuid())}
 
 
 def has_socket(process: str, inode: str) -> bool:
