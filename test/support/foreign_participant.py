@@ -23,8 +23,11 @@ def main(seconds):
     node = Node("foreign", enable_rosout=False)
     found = {"topics": [], "setpoints": 0, "readers": 0, "accepted": None}
 
+    velocity = [0.0]
+
     def count(block):
         found["setpoints"] += block.count
+        velocity[0] = block.set_velocity[-1]
 
     node.create_subscription(msg.AxisBlock, "x/block", count, BLOCKS)
     jog = node.create_publisher(msg.Jog, "x/jog", PLC_INPUT)
@@ -40,9 +43,14 @@ def main(seconds):
         executor.spin_once(timeout_sec=0.1)
         if answer is not None and answer.done():
             found["accepted"] = answer.result().accepted
+    found["readers"] = jog.get_subscription_count()
+    jog.publish(msg.Jog(sequence=sequence + 1, velocity=0.0, valid=True))
+    deadline = time.monotonic() + seconds
+    begin = found["setpoints"]
+    while begin and time.monotonic() < deadline and (velocity[0] or found["setpoints"] < begin + 500):
+        executor.spin_once(timeout_sec=0.1)  # what it has moved comes to rest
     mine = {"/x/block", "/x/jog"} | OWN
     found["topics"] = sorted({name for name, _ in node.get_topic_names_and_types()} - mine)
-    found["readers"] = jog.get_subscription_count()
     print(json.dumps(found))
 
 
