@@ -141,6 +141,18 @@ def closed_file(tmp_path):
     return file
 
 
+HALVED = {
+    "begin": 0.0,
+    "end": None,
+    "parameters": (),
+    "override": 50.0,
+    "program": None,
+    "commands": None,
+    "diff": False,
+}
+"""A changed run: the same one with another override of its channels."""
+
+
 def refused_call(call):
     with pytest.raises(CncError) as caught:
         call()
@@ -160,17 +172,16 @@ def test_an_offline_client_and_the_replay_of_its_run(closed_file, tmp_path):
         rule = "the machine file closes it to services (closed_to_services, P-MACH-00083)"
         assert text == f"P-ERR-26218 plc plc: follow_trajectory refused: axis x: {rule}; nothing was changed"
         block = MC_MoveAbsolute(m.x)
-        block(True, position=5.0)
-        m.wait(0.1)
-        block(True, position=5.0)
+        for _ in m.plc_cycles(0.1):
+            block(True, position=5.0)
         assert block.error_id == 26218
-        m.y.move_absolute(target=5).result()
+        m.y.move_absolute(target=5).wait()
     recorded = verified(recording)
     assert not recorded.states["/x/state"]["set_position"].any()
     refused = [record for record in recorded.commands if record.error_id == 26218]
     assert "move_absolute" in [record.command for record in refused]
     changed = tmp_path / "changed.mcap"
-    assert what_if(str(recording), begin=0.0, output=str(changed), override=50.0) == 0
+    assert what_if(str(recording), output=str(changed), **HALVED) == 0
     kept = [record for record in read_recording(changed).commands if record.error_id == 26218]
     assert [(record.cycle, record.command, record.message) for record in kept] == [
         (record.cycle, record.command, record.message) for record in refused if record.target != "plc"
