@@ -176,7 +176,7 @@ class PlcBridgeNode(UnitNode):
             self.input(Command(axis, JOG, {"velocity": 0.0}))
 
     def _admits(self, command: Command) -> bool:
-        """Topics may give it; the first one of a unit and name that they may not is told."""
+        """Topics may give it; the first one of a unit and name that they may not give is a warning."""
         error = self.why_closed(command, OF_TOPICS)
         what = command.target, command.command
         if error is not None and what not in self._closed_topics:
