@@ -3,6 +3,8 @@
 # make figures   every scenario of examples/figures runs and becomes a picture in docs/figures
 # make docs   reference pages and gallery are made again, then the site: build/site/index.html
 # make ids   cnc_ptp/parameters/declare/ids.py is made from declarations.yaml
+# make lock   requirements.lock: every package of make setup with its version and hashes, for Python 3.11
+# make audit   known vulnerabilities and licences of these packages;  make sbom: build/sbom.json lists them (CycloneDX)
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
@@ -10,7 +12,7 @@ INTERFACES := $(wildcard msg/*.msg srv/*.srv action/*.action)
 PACKAGE := setup.py setup.cfg CMakeLists.txt package.xml
 SOURCES := $(shell find cnc_ptp -name '*.py' -not -path '*/msg/*' -not -path '*/srv/*' -not -path '*/action/*')
 
-.PHONY: setup demo test lint bench figures docs ids clean
+.PHONY: setup demo test lint bench figures docs ids lock audit sbom clean
 setup: $(VENV)/.package $(VENV)/.kernel
 
 $(VENV)/.python:
@@ -82,5 +84,29 @@ docs: setup $(VENV)/.docs
 ids: setup
 	$(BIN)/python cnc_ptp/parameters/declare/make_ids.py
 
+# The tools are apart from what they look at: none of their packages is in its list.
+AUDIT := .venv-audit
+LOCKED := requirements-build.txt requirements.txt requirements-test.txt
+
+$(AUDIT)/.tools: requirements-audit.txt
+	@$(PYTHON) -m venv $(AUDIT) && $(AUDIT)/bin/pip install --quiet --disable-pip-version-check -r requirements-audit.txt
+	@touch $@
+
+lock: $(AUDIT)/.tools
+	$(AUDIT)/bin/uv pip compile --quiet --generate-hashes --python-version 3.11 --no-header --no-emit-index-url \
+	  --output-file requirements.lock $(LOCKED)
+
+# Of the vulnerabilities only those of locked versions count; licences are those of what is installed.
+audit: setup $(AUDIT)/.tools
+	$(AUDIT)/bin/pip-audit --requirement requirements.lock --require-hashes --disable-pip
+	@mkdir -p build
+	$(AUDIT)/bin/pip-licenses --python $(BIN)/python --format markdown --order license --output-file build/licences.md \
+	  --partial-match --fail-on "AGPL;SSPL;Affero"
+	@echo "Licences by package: build/licences.md"
+
+sbom: $(AUDIT)/.tools
+	@mkdir -p build
+	$(AUDIT)/bin/cyclonedx-py requirements --output-reproducible --output-file build/sbom.json requirements.lock
+
 clean:
-	rm -rf $(VENV) build *.egg-info cnc_ptp/msg cnc_ptp/srv cnc_ptp/action cnc_ptp/*.so cnc_ptp/compiled/library
+	rm -rf $(VENV) $(AUDIT) build *.egg-info cnc_ptp/msg cnc_ptp/srv cnc_ptp/action cnc_ptp/*.so cnc_ptp/compiled/library

@@ -88,6 +88,10 @@ def simulate_command(**options: Any) -> None:
 @graph_options
 def run_command(**options: Any) -> None:
     """Run a machine as a ROS graph, one process per node."""
+    if options.pop("isolated"):
+        from cnc_ptp.commands.run.isolated import isolate
+
+        options["listening"] = isolate(options)  # first: no thread must have been started
     if not options["composed"]:
         from cnc_ptp.nodes.forked import start_server
 
@@ -197,6 +201,19 @@ def web_command(**options: Any) -> None:
 
 
 main.add_command(web_users)
+
+
+@main.command("enter", context_settings={"ignore_unknown_options": True, "allow_interspersed_args": False})
+@client_namespace_option
+@click.argument("words", nargs=-1, required=True, metavar="COMMAND...", type=click.UNPROCESSED)
+def enter_command(**options: Any) -> None:
+    """Run a COMMAND inside of an isolated run (run --isolated).
+
+    Only the user of that run may. `cnc_ptp enter cnc_ptp status`, `cnc_ptp enter python client.py`.
+    """
+    from cnc_ptp.commands.client.enter import enter
+
+    enter(**options)
 
 
 @main.command("explain")

@@ -182,7 +182,7 @@ class GraphLink(Link):
         """Its node has them all; they are asked for once."""
         if unit not in self._parameters:
             given = self._thread.call(partial(MachineClient.parameters_of, unit=unit)).result()
-            self._parameters[unit] = given_set(unit, self.kinds[unit], given)
+            self._parameters[unit] = given_set(unit, "machine" if unit == PLC else self.kinds[unit], given)
         return self._parameters[unit]
 
     # time

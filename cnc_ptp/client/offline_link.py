@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from cnc_ptp.axis.external_commands import SETPOINTS
+from cnc_ptp.axis.jog_commands import JOG
 from cnc_ptp.channel.channel_unit import ChannelUnit
 from cnc_ptp.client.faults import GONE
 from cnc_ptp.client.link import Link, Reply, reply_of
@@ -18,7 +19,9 @@ from cnc_ptp.machine.offline import STUCK_TIME
 from cnc_ptp.machine.wiring import build_units, unit_kinds
 from cnc_ptp.nodes.unit.requests import RUN_OVER
 from cnc_ptp.parameters import ParameterError, ParameterSet, machine_text, read_machine
+from cnc_ptp.parameters.view.authority import OF_SERVICES, OF_TOPICS
 from cnc_ptp.plc.plc_unit import PlcUnit
+from cnc_ptp.protocol.authority import require_axes_open
 from cnc_ptp.protocol.blocks import Command, CommandRecord, PlcBlock
 from cnc_ptp.protocol.commands import BAD_ARGUMENT, NEEDS_SOMETHING, THROUGH_PLC
 from cnc_ptp.protocol.unit import PLC
@@ -91,6 +94,8 @@ class OfflineLink(Link):
         asked = Command(unit, command, dict(arguments))
         if self.kinds[unit] != "axis" or command not in THROUGH_PLC:
             self._replies[self._tickets] = reply_of(self._carried_out(asked))
+        elif error := self._run.machine.runner(unit).objection(asked, OF_SERVICES):
+            self._replies[self._tickets] = Reply(self._run.machine.next_cycle, error.number, error.message, {}, 0)
         elif command == SETPOINTS:
             self._replies[self._tickets] = self._take_setpoints(asked)
         else:
@@ -125,7 +130,7 @@ class OfflineLink(Link):
         return self._replies.pop(ticket, None)
 
     def parameters_of(self, unit: str) -> ParameterSet:
-        return self._parameters.sets[unit]
+        return self._parameters.sets["machine" if unit == PLC else unit]
 
     @property
     def _plc(self) -> PlcUnit:
@@ -142,10 +147,11 @@ class OfflineLink(Link):
             reason = f"nothing is given; {NEEDS_SOMETHING[asked.command]}"
             return runner.refuse(asked, CncError(BAD_ARGUMENT, reason))
         try:
+            require_axes_open(asked, self._parameters.closed, OF_SERVICES)
             asked = with_program(asked, self._parameters, self._loaded(asked.target))
         except CncError as error:
             return runner.refuse(asked, error)
-        return runner.command(asked)
+        return runner.asked(asked, OF_TOPICS if asked.command == JOG else OF_SERVICES)
 
     def _loaded(self, unit: str) -> dict[str, str]:
         channel = self._units[unit]

@@ -40,7 +40,10 @@ class OfflineMachine:
         self._count = machine.block_cycles
         watchdog_cycles = machine.watchdog_ms * 1000 // machine.cycle_time_us
         self._wiring: Mapping[str, Inputs] = wiring(machine)
-        self._runners = {name: UnitRunner(unit, watchdog_cycles=watchdog_cycles) for name, unit in units.items()}
+        self._runners = {
+            name: UnitRunner(unit, watchdog_cycles=watchdog_cycles, closed=machine.closed.get(name, ()))
+            for name, unit in units.items()
+        }
         self._blocks: dict[str, CycleBlock] = {}
         self._first_cycle = 0
         self._cycle_time = machine.cycle_time_us * 1e-6

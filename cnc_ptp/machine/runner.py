@@ -6,6 +6,8 @@ from collections.abc import Iterator, Mapping
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.silence import Silence
+from cnc_ptp.parameters.view.authority import OF_CHANNELS, OF_PLC
+from cnc_ptp.protocol.authority import closed_to
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
 from cnc_ptp.protocol.blocks import (
     ChannelBlock,
@@ -26,9 +28,11 @@ CLOCK = "clock"
 class UnitRunner:
     """A unit with the cycle number at which the next command would act."""
 
-    def __init__(self, unit: Unit, *, watchdog_cycles: int) -> None:
-        """`watchdog_cycles`: a life sign of the PLC that does not change for that long is lost."""
+    def __init__(self, unit: Unit, *, watchdog_cycles: int, closed: tuple[str, ...] = ()) -> None:
+        """`watchdog_cycles`: a life sign of the PLC that does not change for that long is lost. `closed`: sources
+        (parameters/view/authority.py) that do not command the unit."""
         self.unit = unit
+        self._closed = closed
         self.next_cycle = 0
         self._answers: list[CommandAnswer] = []
         self._life_sign = -1
@@ -39,12 +43,35 @@ class UnitRunner:
         """A command from a service or a watchdog; acts at the first cycle of the next block."""
         return self.unit.command(command, self.next_cycle)
 
+    def asked(self, command: Command, source: str) -> CommandRecord:
+        """As `command`, if `source` may command the unit."""
+        error = self.objection(command, source)
+        return self.command(command) if error is None else self.refuse(command, error)
+
+    def objection(self, command: Command, source: str) -> CncError | None:
+        """Why the unit does not take a command from `source`; None if it does."""
+        unit = self.unit
+        return closed_to(unit.kind, unit.name, command.command, command.arguments, source=source, closed=self._closed)
+
+    def refuse_again(self, record: CommandRecord) -> None:
+        """A command of a recording that did not reach the unit, and does not now."""
+        self.unit.records.append(record)
+        self.unit.report(record.cycle, Severity.WARNING, record.error_id, record.message, record.values)
+
     def refuse(self, command: Command, error: CncError) -> CommandRecord:
         """The record of a command that does not reach the unit, for the reason of `error`; recorded like all others."""
         unit, cycle = self.unit, self.next_cycle
         text = f"{unit.kind} {unit.name}: {command.command} refused: {error.reason}; nothing was changed"
         record = CommandRecord(
-            cycle, unit.name, command.command, command.arguments_json, False, error.number, text, values=error.values
+            cycle,
+            unit.name,
+            command.command,
+            command.arguments_json,
+            False,
+            error.number,
+            text,
+            id=command.id,
+            values=error.values,
         )
         unit.records.append(record)
         unit.report(cycle, Severity.WARNING, error.number, text, error.values)
@@ -64,7 +91,7 @@ class UnitRunner:
         """Applies the commands that `inputs` carry for this unit."""
         self.next_cycle = tick.first_cycle
         for sender, command in commands_for(self.unit.name, inputs):
-            record = self.unit.command(command, tick.first_cycle)
+            record = self.asked(command, OF_PLC if sender == PLC else OF_CHANNELS)
             if sender == PLC:
                 answer = (command.id, record.error_id, record.job, record.message, record.values_json)
                 self._answers.append(CommandAnswer(*answer))

@@ -21,6 +21,7 @@ from cnc_ptp.nodes.unit.jobs import JobServer
 from cnc_ptp.nodes.unit.requests import given_arguments
 from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters
+from cnc_ptp.parameters.view.authority import OF_SERVICES
 from cnc_ptp.protocol.blocks import ChannelBlock, Command, CommandRecord, CycleBlock, PlcBlock
 from cnc_ptp.protocol.commands import COMMANDS
 
@@ -75,13 +76,13 @@ class ChannelNode(UnitNode):
         start = Command(self.unit.name, "start", given_arguments(known, goal))
         return [Command(self.unit.name, "load", {"program": goal.program}), start] if goal.program else [start]
 
-    def command(self, command: Command) -> CommandRecord:
+    def command(self, command: Command, source: str = OF_SERVICES) -> CommandRecord:
         """As UnitNode; a program is read here, so that the unit and each replay get its text."""
         try:
             command = with_program(command, self._machine, self._loaded)
         except CncError as error:
             return self.refuse(command, error)
-        return super().command(command)
+        return super().command(command, source)
 
     def arguments(self, command: str, request: Any) -> dict[str, Any]:
         """As UnitNode, with the programs that come with the request."""

@@ -12,7 +12,9 @@ from typing import Any
 import click
 
 from cnc_ptp import msg
+from cnc_ptp.axis.external_commands import SETPOINTS
 from cnc_ptp.axis.jog_commands import JOG
+from cnc_ptp.errors import CncError
 from cnc_ptp.machine.plc_file import read_plc
 from cnc_ptp.machine.run_entries import read_entries
 from cnc_ptp.machine.silence import Silence, patience_of
@@ -32,12 +34,14 @@ from cnc_ptp.nodes.bridge.value_topics import ValueTopics
 from cnc_ptp.nodes.topics import LIFE_SIGN, PLC_INPUT, PLC_TOPICS, VALUE_TOPICS, plc_quality, plc_topic
 from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters, read_machine
+from cnc_ptp.parameters.view.authority import OF_SERVICES, OF_TOPICS
 from cnc_ptp.plc.hli.hli import Hli
 from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.plc.program.plc_program import PlcFile
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.plc.sequence import is_newer
-from cnc_ptp.protocol.blocks import Command, CycleBlock, PlcBlock, Severity
+from cnc_ptp.protocol.authority import require_axes_open
+from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, PlcBlock, Severity
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.start_options import start_options, take_start
 
@@ -85,7 +89,8 @@ class PlcBridgeNode(UnitNode):
         self._life_sign_timeout = patience_of(machine.life_sign_timeout_ms)
         self._life_sign_counter: int | None = None
         self._life_signs = Silence(self._life_sign_timeout)
-        self._values = ValueTopics(machine, self.plc, self._warn)
+        self._values = ValueTopics(machine, self.plc, self._warn, self._admits)
+        self._closed_topics: set[tuple[str, str]] = set()
         self._hli = Hli(
             self.plc,
             kinds=self._kinds,
@@ -155,18 +160,37 @@ class PlcBridgeNode(UnitNode):
             return
         self._sequence[topic] = message.sequence
         direction = message.direction if message.valid else 0
+        if direction and not self._admits(Command(axis, SETPOINTS)):
+            return
         row = [message.cycle, message.position, message.velocity, message.acceleration, direction]
         self.plc.setpoints.arrive(axis, row)
 
     def _on_jog(self, axis: str, message: msg.Jog) -> None:
         velocity = self._jogs.heard(axis, message, time.monotonic(), paced=self.paced)
-        if velocity is not None:
+        if velocity is not None and self._admits(Command(axis, JOG, {"velocity": velocity})):
             self.input(Command(axis, JOG, {"velocity": velocity}))
 
     def _watch_jogs(self) -> None:
         """A jog moves only while its messages come."""
         for axis in self._jogs.fallen_silent(time.monotonic()):
             self.input(Command(axis, JOG, {"velocity": 0.0}))
+
+    def _admits(self, command: Command) -> bool:
+        """Topics may give it; the first one of a unit and name that they may not give is a warning."""
+        error = self.why_closed(command, OF_TOPICS)
+        what = command.target, command.command
+        if error is not None and what not in self._closed_topics:
+            self._closed_topics.add(what)
+            self._warn(error.number, error.message)
+        return error is None
+
+    def command(self, command: Command, source: str = OF_SERVICES) -> CommandRecord:
+        """As UnitNode; a trajectory takes the authority over all of its axes."""
+        try:
+            require_axes_open(command, self._machine.closed, source)
+        except CncError as error:
+            return self.refuse(command, error)
+        return super().command(command, source)
 
     def input(self, command: Command) -> None:
         """A command of a person or an external PLC, for the next block."""

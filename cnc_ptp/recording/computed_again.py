@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters
+from cnc_ptp.protocol.authority import NOT_AUTHORISED
 from cnc_ptp.protocol.blocks import Command, CommandRecord
 from cnc_ptp.protocol.commands import COUPLINGS
 from cnc_ptp.protocol.unit import PLC
@@ -48,5 +49,19 @@ def fresh_machine(machine: MachineParameters) -> OfflineMachine:
 def computed_again(offline: OfflineMachine, commands: ByCycle, end: int) -> Iterator[Outputs]:
     """The blocks up to the cycle `end`, as they were recorded."""
     while offline.next_cycle < end:
-        given = commands.get(offline.next_cycle, ())
+        given = refused_again(offline, commands.get(offline.next_cycle, ()))
         yield offline.replay_tick(by_unit(Command.from_record(record) for record in given))
+
+
+def refused_again(offline: OfflineMachine, records: Iterable[CommandRecord]) -> list[CommandRecord]:
+    """Those whose source had no authority are refused as they were; the others are returned.
+
+    Who gave a command is not recorded: fed in again, they might be carried out.
+    """
+    others = []
+    for record in records:
+        if record.error_id == NOT_AUTHORISED:
+            offline.runner(record.target).refuse_again(record)
+        else:
+            others.append(record)
+    return others

@@ -21,7 +21,7 @@ from cnc_ptp.protocol.blocks import ChannelBlock, Command, CommandRecord, CycleB
 from cnc_ptp.protocol.channel_states import ChannelStateCode
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.recording.checkpoints import state_before
-from cnc_ptp.recording.computed_again import by_unit, commands_by_cycle, computed_again, fresh_machine
+from cnc_ptp.recording.computed_again import by_unit, commands_by_cycle, computed_again, fresh_machine, refused_again
 from cnc_ptp.recording.recorded_answers import DelayedAnswers, RecordedAnswers
 from cnc_ptp.recording.run_inputs import RunInputs
 from cnc_ptp.state.other_parameters import change_parameters
@@ -82,7 +82,7 @@ class WhatIf:
             changed.go_on_from(machine.next_cycle, runners, blocks)
             machine = changed
         while machine.next_cycle < self.end:
-            outputs = machine.changed_tick(self._changed_commands(machine.next_cycle))
+            outputs = machine.changed_tick(self._changed_commands(machine))
             self.running = [name for name, output in outputs.items() if is_running(output.block)]
             yield outputs
 
@@ -132,8 +132,9 @@ class WhatIf:
         plc.outside.append(DelayedAnswers(self._answers))
         return machine
 
-    def _changed_commands(self, cycle: int) -> dict[str, list[Command]]:
-        commands = [self._changed(record) for record in self._commands.get(cycle, ())]
+    def _changed_commands(self, machine: OfflineMachine) -> dict[str, list[Command]]:
+        cycle = machine.next_cycle
+        commands = [self._changed(record) for record in refused_again(machine, self._commands.get(cycle, ()))]
         given = [command for command in commands if command is not None]
         if cycle == self.begin and self._change.override is not None:
             given += [Command(name, "set_override", {"percent": self._change.override}) for name in self._old.channels]

@@ -25,19 +25,23 @@ class RunFiles(NamedTuple):
 
     machine: str
     program: str | None = None
+    users: str | None = None
 
 
 class WebBesideRun:
     """Has its port from the beginning, and serves as soon as the machine runs; nothing without a port."""
 
-    def __init__(self, port: int | None, files: RunFiles) -> None:
-        """Raises CncError 26230, 26231."""
+    def __init__(self, port: int | None, files: RunFiles, listening: socket.socket | None = None) -> None:
+        """`listening`: a socket that has the port already. Raises CncError 26230, 26231, 26246."""
         self._port, self._files = port, files
-        self._socket: socket.socket | None = None
+        self._socket = listening
         self._process: subprocess.Popen[bytes] | None = None
         if port is not None:
-            require_packages()
-            self._socket = listen(HOST, port)
+            self._socket = listening or listen_for_pages(port)
+            if files.users is not None:
+                from cnc_ptp.web.access.users import Users
+
+                Users(files.users)  # what is wrong with it is reported before anything is started
 
     def begin(self) -> None:
         """The clock ticks: its process starts, and prints the address."""
@@ -45,6 +49,7 @@ class WebBesideRun:
             return
         folder = str(Path(self._files.program).parent) if self._files.program else "."
         options = ["--port", str(self._port), "--programs", folder, "--machine", self._files.machine]
+        options += [] if self._files.users is None else ["--users", self._files.users]
         number = self._socket.fileno()
         self._process = subprocess.Popen(
             [sys.executable, "-m", "cnc_ptp", "web", *options, "--listening", str(number), *ros_arguments().words],
@@ -70,6 +75,12 @@ class WebBesideRun:
                 self._process.wait(END_TIME)
             except subprocess.TimeoutExpired:
                 self._process.kill()
+
+
+def listen_for_pages(port: int) -> socket.socket:
+    """The socket of the pages. Raises CncError 26230, 26231."""
+    require_packages()
+    return listen(HOST, port)
 
 
 def be_nice() -> None:

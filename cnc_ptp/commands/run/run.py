@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from socket import socket
+
 from rich.console import Console
 
 from cnc_ptp import KERNEL
@@ -40,12 +42,15 @@ def run(
     recorder: RecorderOptions | None = None,
     foxglove: int | None = None,
     web: int | None = None,
+    web_users: str | None = None,
+    listening: socket | None = None,
 ) -> int:
     """Runs the graph; prints a summary. Status 1 when a unit ended in error, a node died or the disk was full.
 
     `recorder`: None = without one.
     `stay`: until Ctrl-C, which is no error when everything is at a standstill. `strict`: status 1 also when a
-    command was refused. `web`: port of its pages, None = no pages.
+    command was refused. `web`: port of its pages, None = no pages; `web_users`: file of
+    their users; `listening`: a socket that has the port already.
     """
     check_recording(record, machine_file=machine, NC_program=program, scenario=scenario, PLC_file=plc)
     parameters = read_machine(machine)
@@ -69,7 +74,7 @@ def run(
         recorder=recorder,
         foxglove=foxglove,
     )
-    with WebBesideRun(web, RunFiles(machine, program)) as pages, RunProgress() as progress:
+    with WebBesideRun(web, RunFiles(machine, program, web_users), listening) as pages, RunProgress() as progress:
 
         def show(monitor: RunMonitor) -> None:
             if monitor.cycle:

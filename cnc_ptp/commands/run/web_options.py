@@ -17,6 +17,11 @@ web_port_option = click.option(
 )
 """Of `cnc_ptp run`."""
 
+web_users_option = click.option(
+    "--web-users", type=click.Path(dir_okay=False), help="File of users of these pages; without it there is no login."
+)
+"""Of `cnc_ptp run`, as --users of `cnc_ptp web`."""
+
 
 web_options = option_group(
     click.argument("recording", required=False, type=click.Path()),

@@ -17,6 +17,7 @@ from cnc_ptp.machine.command_files import with_table
 from cnc_ptp.nodes.topics import COMMAND, COUPLING_SERVICES
 from cnc_ptp.nodes.unit.requests import RUN_OVER, given_arguments
 from cnc_ptp.nodes.unit.unit_node import UnitNode
+from cnc_ptp.parameters.view.authority import OF_SERVICES
 from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.protocol.blocks import Command, json_of
 from cnc_ptp.protocol.commands import COMMANDS
@@ -72,6 +73,8 @@ class CouplingServices:
             text = f"axis {axis}: {command} refused: its node is lost; nothing was changed"
             return answered(response, UPSTREAM_LOST, text)
         asked = Command(axis, command, arguments)
+        if error := self._node.why_closed(asked, OF_SERVICES):
+            return answered(response, error.number, error.message)
         self._plc.input(asked)
         self._open.append(Call(asked, response, time.monotonic() + PATIENCE))
         return response

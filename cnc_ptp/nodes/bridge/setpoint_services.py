@@ -13,8 +13,9 @@ from cnc_ptp.machine.command_files import with_table
 from cnc_ptp.nodes.bridge.coupling_services import answered
 from cnc_ptp.nodes.unit.requests import RUN_OVER
 from cnc_ptp.nodes.unit.unit_node import UnitNode
+from cnc_ptp.parameters.view.authority import OF_SERVICES
 from cnc_ptp.plc.plc_unit import PlcUnit
-from cnc_ptp.protocol.blocks import json_of
+from cnc_ptp.protocol.blocks import Command, json_of
 
 ROWS = "setpoints"
 
@@ -32,6 +33,8 @@ class SetpointServices:
         if self._node.is_over:
             text = f"axis {axis}: {SETPOINTS} refused: the run has ended; nothing was changed"
             return answered(response, RUN_OVER, text)
+        if error := self._node.why_closed(Command(axis, SETPOINTS), OF_SERVICES):
+            return answered(response, error.number, error.message)
         response.cycle = self._node.next_cycle
         rows = [[row.cycle, row.position, row.velocity, row.acceleration, row.direction] for row in request.setpoints]
         try:

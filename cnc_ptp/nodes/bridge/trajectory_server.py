@@ -15,6 +15,7 @@ from cnc_ptp.nodes.topics import EVENT, EVENTS, PLC_INPUT, TRAJECTORY_ACTION, TR
 from cnc_ptp.nodes.unit.jobs import JobServer
 from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters
+from cnc_ptp.parameters.view.authority import OF_TOPICS
 from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.plc.trajectories import FOLLOW, FollowedTrajectory
 from cnc_ptp.protocol.blocks import AxisBlock, Command, CommandRecord, CycleBlock
@@ -61,7 +62,7 @@ class TrajectoryServer(JobServer):
 
     def _on_topic(self, trajectory: JointTrajectory) -> None:
         """Without tolerances; a refusal is recorded, and an event of the PLC."""
-        self._node.command(self._command(trajectory, {}))
+        self._node.command(self._command(trajectory, {}), OF_TOPICS)
 
     def _commands(self, goal: Any) -> list[Command]:
         self._joints, self._waited, self._followed = list(goal.trajectory.joint_names), 0, None

@@ -31,8 +31,15 @@ CommandOf = Callable[[str, Fields], Command | None]
 class ValueTopics:
     """What has come on the value topics since the last block, and what was commanded of it before."""
 
-    def __init__(self, machine: MachineParameters, plc: PlcUnit, warn: Callable[[int, str], None]) -> None:
-        """`warn(number, text)`: publishes what happens to messages."""
+    def __init__(
+        self,
+        machine: MachineParameters,
+        plc: PlcUnit,
+        warn: Callable[[int, str], None],
+        admits: Callable[[Command], bool] = lambda command: True,
+    ) -> None:
+        """`warn(number, text)`: publishes what happens to messages. `admits`: topics may give this command."""
+        self._admits = admits
         units: Mapping[str, ChannelParameters | AxisParameters | SpindleParameters]
         units = {**machine.channels, **machine.axes, **machine.spindles}
         self._highest_override = {name: unit.max_override_percent for name, unit in units.items()}
@@ -94,7 +101,8 @@ class ValueTopics:
             arguments = command.arguments_json
             if self._last.get(topic) != arguments:
                 self._last[topic] = arguments
-                yield command
+                if self._admits(command):
+                    yield command
 
     def _override(self, unit: str, message: Fields) -> Command:
         if unit in self._spindles:

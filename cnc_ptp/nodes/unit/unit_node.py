@@ -50,6 +50,8 @@ from cnc_ptp.nodes.unit.parameters import declare_parameters, refusal, refused_c
 from cnc_ptp.nodes.unit.requests import RUN_OVER, given_arguments, objection
 from cnc_ptp.nodes.watchdog import Watchdog
 from cnc_ptp.parameters import MachineParameters
+from cnc_ptp.parameters.view.authority import OF_SERVICES
+from cnc_ptp.protocol.authority import closed_to
 from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Event, PlcBlock, Severity
 from cnc_ptp.protocol.commands import BAD_ARGUMENT, COMMANDS
 from cnc_ptp.protocol.unit import PLC, Unit
@@ -101,7 +103,8 @@ class UnitNode(PollingNode):
         """
         super().__init__(unit.name, enable_rosout=False)
         self._kinds = unit_kinds(machine)
-        self._runner = UnitRunner(unit, watchdog_cycles=machine.watchdog_ms * 1000 // machine.cycle_time_us)
+        watchdog_cycles = machine.watchdog_ms * 1000 // machine.cycle_time_us
+        self._runner = UnitRunner(unit, watchdog_cycles=watchdog_cycles, closed=machine.closed.get(unit.name, ()))
         wires = wiring(machine)
         self._inputs: Inputs = wires[unit.name]
         self._readers = {name for name, needs in wires.items() if unit.name in (*needs.upstream, *needs.feedback)}
@@ -332,14 +335,20 @@ class UnitNode(PollingNode):
         """No more block is computed."""
         return self._gate.closed
 
-    def command(self, command: Command) -> CommandRecord:
+    def command(self, command: Command, source: str = OF_SERVICES) -> CommandRecord:
         """Carries out a command between two blocks: from a service, an action or the watchdog."""
         if self._gate.closed:
             return self.refuse(command, CncError(RUN_OVER, "the run has ended"))
         with self._working():
-            record = self._runner.command(command)
+            record = self._runner.asked(command, source)
         self._publish_records()
         return record
+
+    def why_closed(self, command: Command, source: str) -> CncError | None:
+        """Why a unit of the machine does not take a command from `source`; None if it does."""
+        unit = command.target
+        closed = self._machine.closed.get(unit, ())
+        return closed_to(self._kinds[unit], unit, command.command, command.arguments, source=source, closed=closed)
 
     def refuse(self, command: Command, error: CncError) -> CommandRecord:
         """The record of a command that does not reach the unit; it is published like all others."""

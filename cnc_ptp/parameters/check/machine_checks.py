@@ -1,10 +1,11 @@
 """All checks of a machine: parameters against each other, channels against axes and spindles.
 
-Each check yields Problems. Only `check_machine` is used by other modules.
+Each check yields Problems. Only `check_machine` and `unknown_closed_units` are used by other modules.
 """
 
 from collections.abc import Callable, Iterator
 
+from cnc_ptp.errors import nearest_name
 from cnc_ptp.parameters import errors
 from cnc_ptp.parameters.check.axis_checks import (
     axis_type_fits,
@@ -22,7 +23,9 @@ from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.errors import Problem
 from cnc_ptp.parameters.read.messages import problem
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
+from cnc_ptp.parameters.view.authority import CLOSED_TO
 from cnc_ptp.parameters.view.channel_members import Sets, axis_entries
+from cnc_ptp.parameters.view.machine_view import PLC
 
 
 def check_machine(sets: Sets) -> list[Problem]:
@@ -38,6 +41,17 @@ def check_machine(sets: Sets) -> list[Problem]:
                 problems += channel_check(parameters, sets)
     problems += axes_in_two_channels(sets)
     return problems
+
+
+def unknown_closed_units(machine: ParameterSet, sets: Sets) -> Iterator[Problem]:
+    """The lists of command authority name units of the machine, or its PLC."""
+    units = [*sets, PLC]
+    for number in CLOSED_TO.values():
+        for name in machine.names(number):
+            if name not in units:
+                near = nearest_name(name, units) or "."
+                text = f"'{name}' is no unit{near} There are {', '.join(units)}"
+                yield problem(machine, errors.UNIT_NAME, number, (), text)
 
 
 def duplicate_numbers(sets: Sets) -> Iterator[Problem]:

@@ -148,6 +148,11 @@ HANDSHAKE_TIMEOUT_MS = "P-MACH-00060"  # handshake_timeout_ms
 HOMING_REQUIRED = "P-MACH-00061"  # homing_required
 HOMING_TIMEOUT_MS = "P-MACH-00062"  # homing_timeout_ms
 STATE_RATE_HZ = "P-MACH-00070"  # state_rate_hz
+CLOSED_TO_PLC = "P-MACH-00080"  # closed_to_plc
+CLOSED_TO_CHANNELS = "P-MACH-00081"  # closed_to_channels
+CLOSED_TO_TOPICS = "P-MACH-00082"  # closed_to_topics
+CLOSED_TO_SERVICES = "P-MACH-00083"  # closed_to_services
+CLOSED_TO_PAGES = "P-MACH-00084"  # closed_to_pages
 
 # channel list
 GRUPPE_ACHS_ANZAHL = "P-CHAN-00003"  # gruppe[i].achs_anzahl

@@ -8,11 +8,15 @@ from typing import Annotated
 from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.read.messages import Notice
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
+from cnc_ptp.parameters.view.authority import closed_units
 from cnc_ptp.parameters.view.axis_view import AxisParameters, axis_view
 from cnc_ptp.parameters.view.channel_view import ChannelParameters, channel_view
 from cnc_ptp.parameters.view.control_view import ControlParameters
 from cnc_ptp.parameters.view.fields import given_fields
 from cnc_ptp.parameters.view.spindle_view import SpindleParameters, spindle_view
+
+PLC = "plc"
+"""Name of the unit whose parameters are those of /machine."""
 
 
 @dataclass(frozen=True)
@@ -30,6 +34,8 @@ class MachineParameters:
     channels: Mapping[str, ChannelParameters]
     axes: Mapping[str, AxisParameters]
     spindles: Mapping[str, SpindleParameters]
+    closed: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """Unit -> sources of commands that the machine file closes it to."""
     warnings: tuple[Notice, ...] = ()
     """Values that are accepted but may not do what is expected, one line each."""
     sets: Mapping[str, ParameterSet] = field(default_factory=dict, repr=False, compare=False)
@@ -55,6 +61,7 @@ def machine_view(
         channels=channels,
         axes=axes,
         spindles=spindles,
+        closed=closed_units(machine, (PLC, *sets)),
         warnings=warnings,
         sets={"machine": machine, **sets},
         **given_fields(MachineParameters, machine),

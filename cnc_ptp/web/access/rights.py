@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from cnc_ptp.errors import CncError, nearest_name
+from cnc_ptp.protocol.authority import STOPS
 from cnc_ptp.protocol.commands import COMMANDS, INTERNAL, OF_CHANNELS
 from cnc_ptp.web.numbers import NOT_FROM_PAGES, WRONG_ROLE
 from cnc_ptp.web.protocol import NOTHING
@@ -22,13 +23,6 @@ OF_OTHERS: Mapping[str, frozenset[str]] = {
     "plc": frozenset({"serve", "set_life_sign", "stop_all", "abort"}),
 }
 """Commands that have a message of their own (jog, load), or belong to the PLC and to whoever has started the run."""
-STOPS: Mapping[str, frozenset[str]] = {
-    "axis": frozenset({"stop", "halt", "emergency_stop", "halt_superimposed", "compensation_stop"}),
-    "spindle": frozenset({"stop"}),
-    "channel": frozenset({"reset"}),
-    "plc": frozenset(),
-}
-"""Whoever may operate may stop, also without the command."""
 OF_COMMISSIONERS: Mapping[str, frozenset[str]] = {
     "axis": frozenset(
         {
@@ -57,7 +51,7 @@ def refused_from_pages(kind: str, command: str) -> bool:
 
 
 def is_stop(kind: str, command: str, arguments: Mapping[str, Any]) -> bool:
-    """It stops something, or holds it: permitted to every operator."""
+    """It stops something, or holds it: permitted to every operator, also without the command."""
     holds = command == "feed_hold" or (kind == "plc" and command == "emergency_stop")
     return command in STOPS[kind] or (holds and arguments.get("enabled") is True)
 

@@ -15,7 +15,10 @@ from cnc_ptp.client.link import Link, Reply
 from cnc_ptp.client.offline_link import OfflineLink
 from cnc_ptp.errors import CncError
 from cnc_ptp.nodes.bridge.jog_topics import JogTopics
+from cnc_ptp.parameters.view.authority import OF_PAGES, closed_units
+from cnc_ptp.protocol.authority import closed_to
 from cnc_ptp.protocol.blocks import Event, Severity
+from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.web.access.rights import is_stop
 from cnc_ptp.web.faces.description import describe_commands, describe_units
 from cnc_ptp.web.faces.face import Face, News, State
@@ -43,6 +46,7 @@ class MachineFace(Face):
         """How often a unit was stopped."""
         self._turns = {unit: asyncio.Lock() for unit in self.kinds}
         self.sets = {unit: self._link.parameters_of(unit) for unit, kind in self.kinds.items() if kind != "plc"}
+        self._closed = closed_units(self._link.parameters_of(PLC), self.kinds)
         self._units = describe_units(self.kinds, self.sets, self.cycle_time)
 
     def machine(self) -> dict[str, Any]:
@@ -79,6 +83,11 @@ class MachineFace(Face):
             raise unknown_unit(unit, self.kinds)
         given = self._machine[unit]._prepared(command, dict(arguments))
         try:
+            self.require_open(unit, command, given)
+        except CncError as error:
+            self.note(round(self.time / self.cycle_time), who_text(user, self.kinds[unit], unit, command, error.number))
+            raise
+        try:
             reply = await self._in_turn(unit, command, given, user)
         except CncError as error:
             end = f"no answer, P-ERR-{error.number}"
@@ -88,6 +97,13 @@ class MachineFace(Face):
         if reply.error_id:
             raise error_of(reply.error_id, reply.message, reply.values)
         return reply
+
+    def require_open(self, unit: str, command: str, arguments: Mapping[str, Any]) -> None:
+        """Raises CncError 26218 where the machine file closes the unit to pages."""
+        closed = self._closed.get(unit, ())
+        error = closed_to(self.kinds[unit], unit, command, arguments, source=OF_PAGES, closed=closed)
+        if error is not None:
+            raise error
 
     async def _in_turn(self, unit: str, command: str, arguments: Mapping[str, Any], user: str) -> Reply:
         """Commands of a unit one after the other. A stop waits for none; those that wait then are not sent."""
@@ -168,6 +184,7 @@ class OfflineFace(MachineFace):
         return reply
 
     def jog(self, axis: str, velocity: float, *, user: str) -> None:
+        self.require_open(axis, "jog", {"velocity": velocity})
         self._sequence += 1
         message: Any = SimpleNamespace(
             header=SimpleNamespace(frame_id=user), sequence=self._sequence, valid=True, velocity=velocity

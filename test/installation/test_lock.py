@@ -1,0 +1,42 @@
+"""requirements.lock: every requirement has an exact version that fits it, and hashes."""
+
+import re
+from pathlib import Path
+
+import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+
+ROOT = Path(__file__).parents[2]
+FILES = ("requirements-build.txt", "requirements.txt", "requirements-test.txt")
+ENTRY = re.compile(r"^([A-Za-z0-9._-]+)(?:\[[^\]]*\])?==(\S+)(?: ; .*)? \\$", re.MULTILINE)
+
+
+def locked():
+    """Name -> version."""
+    return {
+        canonicalize_name(name): version for name, version in ENTRY.findall((ROOT / "requirements.lock").read_text())
+    }
+
+
+def required():
+    for file in FILES:
+        for line in (ROOT / file).read_text().splitlines():
+            text = line.partition("#")[0].strip()
+            if text:
+                yield Requirement(text)
+
+
+@pytest.mark.parametrize("requirement", required(), ids=lambda requirement: requirement.name)
+def test_a_requirement_is_locked(requirement):
+    """After a change of a requirement: make lock."""
+    version = locked().get(canonicalize_name(requirement.name))
+    assert version is not None, "make lock"
+    assert requirement.specifier.contains(version, prereleases=True)
+
+
+def test_every_entry_has_hashes():
+    text = (ROOT / "requirements.lock").read_text()
+    entries = [part for part in re.split(r"\n(?=[A-Za-z0-9])", text) if part]
+    assert len(entries) == len(locked())
+    assert all("--hash=sha256:" in entry for entry in entries)

@@ -1,0 +1,52 @@
+"""Command authority of pages: a unit that the machine file closes to them, and one that it closes to services."""
+
+import asyncio
+from pathlib import Path
+
+import pytest
+from web_support import MILL, site
+
+PLACE = "    spindles: [s]\n"
+
+
+def run(story, **options):
+    async def told():
+        async with site(**options) as here:
+            await story(here)
+
+    asyncio.run(told())
+
+
+def closed(folder, source):
+    """The mill with x closed to a source."""
+    text = Path(MILL).read_text()
+    assert PLACE in text
+    file = folder / "closed.yaml"
+    file.write_text(text.replace(PLACE, f"{PLACE}    closed_to_{source}: [x]\n", 1))
+    return str(file)
+
+
+@pytest.mark.parametrize(("source", "number"), [("pages", "P-MACH-00084"), ("services", "P-MACH-00083")])
+def test_a_command_of_a_page(tmp_path, source, number):
+    async def story(here):
+        page = await here.page()
+        refused = await page.command("x", "move_absolute", target=1)
+        text = f"axis x: move_absolute refused: the machine file closes it to {source} (closed_to_{source}, {number})"
+        assert (refused["number"], refused["text"]) == (26218, f"{text}; nothing was changed")
+        assert (await page.command("y", "move_absolute", target=1))["ok"]
+        assert (await page.command("x", "halt")).get("number") != 26218
+        told = await page.wait_for("event", lambda event: event["source"] == "web" and "refused" in event["text"])
+        assert told["text"] == "web: axis x: move_absolute, refused with P-ERR-26218"
+
+    run(story, machine=closed(tmp_path, source))
+
+
+def test_a_jog_of_a_page(tmp_path):
+    async def story(here):
+        page = await here.page()
+        await page.send(type="jog", axis="x", velocity=5.0, sequence=1, time=0.0)
+        error = await page.wait_for("error")
+        rule = "the machine file closes it to pages (closed_to_pages, P-MACH-00084)"
+        assert (error["number"], error["text"]) == (26218, f"axis x: jog refused: {rule}; nothing was changed")
+
+    run(story, machine=closed(tmp_path, "pages"))
