@@ -12,7 +12,7 @@ from cnc_ptp.parameters.check.runtime_change import changed
 from cnc_ptp.parameters.view.axis_view import axis_view
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import StatusBit as B
-from cnc_ptp.protocol.commands import COUPLINGS
+from cnc_ptp.protocol.commands import COUPLINGS, HELD_OFF
 from cnc_ptp.recording.motion_check.continuity import PLACES, Setpoints, check_continuity
 from cnc_ptp.recording.motion_check.findings import Findings, Mask, MotionResult, Numbers
 from cnc_ptp.recording.motion_check.inputs import Columns, MotionInputs, Order
@@ -22,6 +22,9 @@ from cnc_ptp.recording.motion_check.limits import check_limits, check_numbers, c
 LINEAR = ("couple", "couple_gantry")
 ADDED = frozenset({"move_superimposed", "compensation_start"})
 ABRUPT = frozenset({"emergency_stop", "set_emergency_stop"})
+STARTS = HELD_OFF["axis"] | {"external_setpoints", "decouple", "set_coupling_factor", "set_cyclic_factor"}
+"""Commands that may move an axis that a stop has brought to rest."""
+STOPS = frozenset({"stop", "halt", "emergency_stop", "set_emergency_stop", "reset"})
 DYNAMICS = ("acceleration", "deceleration", "jerk")
 
 
@@ -62,6 +65,7 @@ class AxisCheck:
         self._check_power()
         self._check_soft_limits()
         self._check_couplings()
+        self._check_stops()
 
     # what is permitted
 
@@ -182,6 +186,19 @@ class AxisCheck:
         disabled: Mask = self.state == S.DISABLED
         check_rest(self.points, disabled, self.laws.placed, self.found, "without power")
         check_rest(self.points, self.state == S.STANDSTILL, self.laws.placed, self.found, "at a standstill")
+
+    def _check_stops(self) -> None:
+        """An axis that a stop has brought to rest stays there until a command that moves it, a path or a master."""
+        stopped = np.zeros(len(self.cycles), dtype=bool)
+        for order in self.orders:
+            if order.command in STARTS:
+                stopped[self.stretches.row(order.cycle) :] = False
+            elif order.command in STOPS:
+                rest = self.stretches.of(order.cycle).stop - 1
+                stopped[rest:] = True
+        moves = stopped & ~self.following & ~since(self.following, self.resting) & (self.points.velocity != 0.0)
+        zero = np.zeros(len(self.cycles))
+        self.found.above("moves although it was stopped", self.points.velocity, zero, moves, f"{self.points.length}/s")
 
     def _check_soft_limits(self) -> None:
         """No motion further out where the position is beyond a soft limit; soft limits move with set_position."""

@@ -20,7 +20,6 @@ from cnc_ptp.recording.motion_check.limits import check_limits, check_numbers, c
 SWITCHES = B.POSITION_CONTROL | B.VELOCITY_CONTROL | B.MONITORING_INVALID
 """Of the position loop: when it opens or closes, the set position goes to where the spindle is."""
 STARTS = frozenset({"start", "set_speed", "orient", "home", "select_gear", "gear_changed", "follow_path"})
-RESUMES = frozenset({"set_override", "suppress_override", "feed_hold", "overlay", "power"})
 STOPS = frozenset({"stop", "reset", "set_emergency_stop", "upstream_lost"})
 
 
@@ -54,6 +53,7 @@ class SpindleCheck:
         check_rest(self.points, self.state == S.DISABLED, placed, self.found, "without power")
         check_rest(self.points, self.state == S.STANDSTILL, placed, self.found, "at a standstill")
         self._check_owner()
+        self._check_channels()
 
     def _laws(self) -> Laws:
         laws = Laws.of(len(self.cycles), growth=inf, reduction=inf, jerk=inf, velocity=inf, law=STEP)
@@ -86,12 +86,36 @@ class SpindleCheck:
         wrong = faster & ~led & ~self._owned()
         self.found.above("speeds up without an owner", self.points.velocity, np.zeros(len(speed)), wrong, "deg/s")
 
+    def _check_channels(self) -> None:
+        """Behind the last cycle of the channel for which it turns, and the time of the watchdog, it only slows down."""
+        speed = np.abs(self.points.velocity)
+        slows = np.concatenate(([True], ~(speed[1:] >= speed[:-1]) | ~self.points.joined))
+        for name, cycles in self.inputs.channels.items():
+            rows = self._turns_for(name) & (speed > 0.0) & ~slows
+            machine = self.inputs.machine
+            patience = machine.watchdog_ms * 1000 // machine.cycle_time_us + 3 * machine.block_cycles
+            wrong = rows & (self.cycles > cycles[-1] + patience)
+            self.found.above("turns for a channel that is gone", self.points.velocity, np.zeros(len(speed)), wrong, "deg/s")
+
+    def _turns_for(self, channel: str) -> Mask:
+        """Rows behind the commands of a channel, up to those of another source."""
+        stretches = Stretches(self.cycles, np.zeros(len(self.cycles), dtype=bool))
+        rows = np.zeros(len(self.cycles), dtype=bool)
+        for order in self.orders:
+            if order.command in STARTS | STOPS:
+                rows[stretches.row(order.cycle) :] = order.arguments.get("source") == channel
+        return rows
+
     def _owned(self) -> Mask:
-        """Rows behind a command that turns the spindle or its master, up to the next stop."""
+        """Rows behind a command that turns the spindle or its master, up to the next stop.
+
+        Of a recording that begins later than the run nobody knows the commands before it.
+        """
         stretches = Stretches(self.cycles, np.zeros(len(self.cycles), dtype=bool))
         owned = np.zeros(len(self.cycles), dtype=bool)
         for unit in self._leaders():
-            of_unit = np.zeros(len(self.cycles), dtype=bool)
+            late = bool(len(self.cycles)) and self.cycles[0] > 0
+            of_unit = np.full(len(self.cycles), late)
             for order in self.inputs.orders_of(unit):
                 if order.command in STARTS:
                     of_unit[stretches.row(order.cycle) :] = True
