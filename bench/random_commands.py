@@ -240,7 +240,9 @@ class CommandedMachine:
         if not isinstance(block, (AxisBlock, SpindleBlock)):
             return
         for state, error in zip(block.state, block.error_id, strict=True):
-            self.require((state == S.ERROR_STOP) == (error != 0) or self.is_pair(block), f"{name} {state} error {error}")
+            self.require(
+                (state == S.ERROR_STOP) == (error != 0) or self.is_pair(block), f"{name} {state} error {error}"
+            )
         self.require(block.state[-1] != S.DISABLED or not block.job, f"{name} without power has job {block.job}")
 
     def is_pair(self, block: Any) -> bool:
@@ -292,7 +294,9 @@ class CommandedMachine:
 
 
 def difference(name: str, first: Any, second: Any) -> str:
-    parted = [each.name for each in fields(first) if repr(getattr(first, each.name)) != repr(getattr(second, each.name))]
+    parted = [
+        each.name for each in fields(first) if repr(getattr(first, each.name)) != repr(getattr(second, each.name))
+    ]
     return f"replay differs: {name} from cycle {first.first_cycle} in {', '.join(parted)}"
 
 
@@ -315,7 +319,9 @@ def lives(steps: int, seed: int) -> Iterator[CommandedMachine]:
 
 def main(arguments: list[str]) -> int:
     """Status 1 with a violation."""
-    steps, seed = (int(word) for word in (*arguments, "3000", "1")[:2]) if len(arguments) != 1 else (int(arguments[0]), 1)
+    steps, seed = (
+        (int(word) for word in (*arguments, "3000", "1")[:2]) if len(arguments) != 1 else (int(arguments[0]), 1)
+    )
     begin, total, found = time.monotonic(), Counter[str](), 0
     for machine in lives(steps, seed):
         total += machine.counts

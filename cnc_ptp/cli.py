@@ -264,7 +264,9 @@ def replay_command(**options: Any) -> None:
 
 @main.command("verify")
 @RECORDING
-@click.option("--motion", is_flag=True, help="Check the motion by its numbers alone: continuity, limits, power, owners.")
+@click.option(
+    "--motion", is_flag=True, help="Check the motion by its numbers alone: continuity, limits, power, owners."
+)
 @click.option("--json", "as_json", is_flag=True, help="With --motion: everything that was found as JSON.")
 def verify_command(recording: str, *, motion: bool, as_json: bool) -> None:
     """Compute a recorded run again to the bit, or check its motion.

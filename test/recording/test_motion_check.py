@@ -40,7 +40,9 @@ SCENARIO = """
 """
 
 
-def make_run(path: Path, scenario: str = SCENARIO, machine: Path = MILL, change: Callable[..., None] | None = None) -> Path:
+def make_run(
+    path: Path, scenario: str = SCENARIO, machine: Path = MILL, change: Callable[..., None] | None = None
+) -> Path:
     """Records a run; `change(name, block)` bends blocks before they are written."""
     parameters = read_machine(str(machine))
     entries = parse_scenario(scenario, "test.yaml", unit_kinds(parameters))
@@ -244,7 +246,9 @@ def refused(path: Path) -> str:
 
 def test_fields_that_were_not_recorded(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("cnc_ptp.recording.motion_check.inputs.AXIS_FIELDS", ("cycle", "set_snap"))
-    assert refused(path) == f"P-ERR-26264 recording {path}: /x/state was recorded without set_snap; no motion was checked"
+    assert (
+        refused(path) == f"P-ERR-26264 recording {path}: /x/state was recorded without set_snap; no motion was checked"
+    )
 
 
 def test_a_missing_file(tmp_path: Path) -> None:

@@ -49,11 +49,12 @@ class Setpoints:
 
 def check_continuity(points: Setpoints, laws: Laws, found: Findings) -> None:
     """Position, velocity and acceleration of all neighbouring cycles; a violation is at the later one."""
-    pairs = _Pairs(points, laws)
     unit = points.length
-    pairs.tell(found, "step of acceleration", pairs.da, *pairs.acceleration_bound(), f"{unit}/s²")
-    pairs.tell(found, "step of velocity", *pairs.velocity_step(), f"{unit}/s")
-    pairs.tell(found, "step of position", *pairs.position_step(), unit)
+    with np.errstate(over="ignore", invalid="ignore"):  # of what is no number, or far from every limit
+        pairs = _Pairs(points, laws)
+        pairs.tell(found, "step of acceleration", pairs.da, *pairs.acceleration_bound(), f"{unit}/s²")
+        pairs.tell(found, "step of velocity", *pairs.velocity_step(), f"{unit}/s")
+        pairs.tell(found, "step of position", *pairs.position_step(), unit)
 
 
 class _Pairs:
@@ -79,9 +80,7 @@ class _Pairs:
         recorded = larger(np.abs(self.points.acceleration))
         return np.where(np.isfinite(self.most), np.maximum(self.most, recorded), recorded)
 
-    def tell(
-        self, found: Findings, what: str, off: Numbers, bound: Numbers, checked: Mask, units: str
-    ) -> None:
+    def tell(self, found: Findings, what: str, off: Numbers, bound: Numbers, checked: Mask, units: str) -> None:
         wrong = self.points.joined & checked & ~(np.abs(off) <= bound)
         shifted = [np.concatenate(([0.0], each)) for each in (off, bound)]
         found.above(what, *shifted, np.concatenate(([False], wrong)), units)
@@ -112,7 +111,7 @@ class _Pairs:
         most = np.where(np.isfinite(self.most), self.most, 0.0)
         share = np.minimum(1.0, np.abs(self.dv) / np.maximum(most * t, 1e-300))
         by_steps = 0.25 * most * t * t * (1.0 - share * share) + self.relative_part(most * t * t) + self.blur_x
-        far = self.velocity * t * self.relative + self.blur_x
+        far = (self.velocity + larger(np.abs(self.points.velocity))) * t * self.relative + self.blur_x
         uses_steps = ~uses_jerk & (self.law <= STEP) & np.isfinite(self.most)
         off = np.where(uses_jerk, by_jerk, np.where(uses_steps, plain, self.dx))
         checked = (uses_jerk | uses_steps | np.isfinite(self.velocity)) & ~self.laws.placed

@@ -76,7 +76,9 @@ class Findings:
     def __init__(self, unit: str, cycles: Cycles, cycle_time: float, result: MotionResult) -> None:
         self._unit, self._cycles, self._cycle_time, self._result = unit, cycles, cycle_time, result
 
-    def above(self, what: str, values: Numbers, limits: Numbers, wrong: Mask, units: str, *, told: bool = False) -> None:
+    def above(
+        self, what: str, values: Numbers, limits: Numbers, wrong: Mask, units: str, *, told: bool = False
+    ) -> None:
         """Rows (n,) in which `wrong` is true, those of neighbouring cycles together."""
         places = np.flatnonzero(wrong)
         if not len(places):

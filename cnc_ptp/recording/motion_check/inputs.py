@@ -62,10 +62,12 @@ class Order:
     arguments: Mapping[str, Any]
 
     def number(self, name: str) -> float:
-        """A positive number among the arguments, 0.0 if there is none."""
-        value = self.arguments.get(name)
-        good = isinstance(value, (int, float)) and not isinstance(value, bool) and value > 0.0
-        return float(value) if good and value is not None else 0.0
+        """A positive number among the arguments, also as text (inf); 0.0 if there is none."""
+        try:
+            value = float(self.arguments.get(name) or 0.0)
+        except (TypeError, ValueError):
+            return 0.0
+        return value if value > 0.0 else 0.0
 
 
 @dataclass(slots=True)

@@ -61,6 +61,13 @@ def since(flag: Mask, reset: Mask) -> Mask:
     return (last_flag >= 0) & ((last_flag > last_reset) | flag)
 
 
+def and_next(rows: Mask) -> Mask:
+    """Rows, and the one behind each: it still has the state from which another motion continues."""
+    found = rows.copy()
+    found[1:] |= rows[:-1]
+    return found
+
+
 class Stretches:
     """From a command to the end of what it began: the first row at rest behind it."""
 

@@ -14,7 +14,7 @@ from cnc_ptp.recording.motion_check.axis_check import setpoints_of
 from cnc_ptp.recording.motion_check.continuity import check_continuity
 from cnc_ptp.recording.motion_check.findings import Findings, Mask, MotionResult
 from cnc_ptp.recording.motion_check.inputs import MotionInputs
-from cnc_ptp.recording.motion_check.laws import FREE, STEP, Laws, Stretches
+from cnc_ptp.recording.motion_check.laws import FREE, ON_PATH, STEP, Laws, Stretches, and_next
 from cnc_ptp.recording.motion_check.limits import check_limits, check_numbers, check_rest
 
 SWITCHES = B.POSITION_CONTROL | B.VELOCITY_CONTROL | B.MONITORING_INVALID
@@ -48,7 +48,7 @@ class SpindleCheck:
         """Everything."""
         check_numbers(self.points, self.found)
         check_continuity(self.points, self.laws, self.found)
-        check_limits(self.points, self.laws, self.found, np.zeros(len(self.cycles), dtype=bool))
+        check_limits(self.points, self.laws, self.found)
         placed = self.laws.placed
         check_rest(self.points, self.state == S.DISABLED, placed, self.found, "without power")
         check_rest(self.points, self.state == S.STANDSTILL, placed, self.found, "at a standstill")
@@ -64,6 +64,8 @@ class SpindleCheck:
                 laws.growth[rows] = laws.reduction[rows] = most
                 laws.velocity[rows] = gear.max_speed
         laws.placed |= self._placed()
+        on_path = and_next((self.bits & B.ON_PATH) != 0)
+        laws.relative[on_path] = ON_PATH
         opened = (np.diff(self.bits & B.POSITION_CONTROL) != 0) & self.parameters.open_loop
         laws.permit(np.concatenate(([False], opened)), FREE)
         return laws
@@ -95,7 +97,9 @@ class SpindleCheck:
             machine = self.inputs.machine
             patience = machine.watchdog_ms * 1000 // machine.cycle_time_us + 3 * machine.block_cycles
             wrong = rows & (self.cycles > cycles[-1] + patience)
-            self.found.above("turns for a channel that is gone", self.points.velocity, np.zeros(len(speed)), wrong, "deg/s")
+            self.found.above(
+                "turns for a channel that is gone", self.points.velocity, np.zeros(len(speed)), wrong, "deg/s"
+            )
 
     def _turns_for(self, channel: str) -> Mask:
         """Rows behind the commands of a channel, up to those of another source."""
@@ -117,10 +121,11 @@ class SpindleCheck:
             late = bool(len(self.cycles)) and self.cycles[0] > 0
             of_unit = np.full(len(self.cycles), late)
             for order in self.inputs.orders_of(unit):
-                if order.command in STARTS:
-                    of_unit[stretches.row(order.cycle) :] = True
+                row = stretches.row(order.cycle)
+                if order.command in STARTS or order.arguments.get("homes"):
+                    of_unit[row:] = True
                 elif order.command in STOPS:
-                    of_unit[stretches.row(order.cycle) :] = False
+                    of_unit[row + 1 :] = False
             owned |= of_unit
         return owned
 
