@@ -263,22 +263,10 @@ class CommandedMachine:
         """Comes to rest, then motion and replay are checked; all violations of the run."""
         self.offline.stop()
         self.tick(100)
-        result = check_motion(self.inputs())
+        result = check_motion(inputs_of(self.machine, self.blocks, self.records))
         self.violations += [f"seed {self.seed}: {violation}" for violation in result.violations]
         self.check_replay()
         return self.violations
-
-    def inputs(self) -> MotionInputs:
-        """The run as the checker reads it from a recording."""
-        commands = [(r.cycle, r.target, r.command, r.arguments_json, r.accepted) for r in self.records]
-        inputs = MotionInputs(self.machine, self.machine.cycle_time_us * 1e-6, orders=orders_by_unit(commands))
-        for name in self.machine.axes:
-            inputs.axes[name] = columns_of(self.blocks[name], AXIS_FIELDS)
-        for name in self.machine.spindles:
-            inputs.spindles[name] = columns_of(self.blocks[name], SPINDLE_FIELDS)
-        for name in self.machine.channels:
-            inputs.channels[name] = columns_of(self.blocks[name], ("cycle",))["cycle"]
-        return inputs
 
     def check_replay(self) -> None:
         """The same blocks again from the recorded commands."""
@@ -298,6 +286,21 @@ def difference(name: str, first: Any, second: Any) -> str:
         each.name for each in fields(first) if repr(getattr(first, each.name)) != repr(getattr(second, each.name))
     ]
     return f"replay differs: {name} from cycle {first.first_cycle} in {', '.join(parted)}"
+
+
+def inputs_of(
+    machine: MachineParameters, blocks: Mapping[str, list[Any]], records: list[CommandRecord]
+) -> MotionInputs:
+    """A run as the checker reads it from a recording; `blocks` by unit."""
+    commands = [(r.cycle, r.target, r.command, r.arguments_json, r.accepted) for r in records]
+    inputs = MotionInputs(machine, machine.cycle_time_us * 1e-6, orders=orders_by_unit(commands))
+    for name in machine.axes:
+        inputs.axes[name] = columns_of(blocks[name], AXIS_FIELDS)
+    for name in machine.spindles:
+        inputs.spindles[name] = columns_of(blocks[name], SPINDLE_FIELDS)
+    for name in machine.channels:
+        inputs.channels[name] = columns_of(blocks[name], ("cycle",))["cycle"]
+    return inputs
 
 
 def columns_of(blocks: list[Any], names: tuple[str, ...]) -> Columns:

@@ -183,7 +183,7 @@ def test_no_jerk_within_the_limit_exceeds_the_bounds() -> None:
         assert off_x <= PEANO + 1e-15
         worst_v, worst_x = max(worst_v, off_v), max(worst_x, off_x)
     assert worst_v == 0.25
-    assert 0.95 * PEANO < worst_x
+    assert worst_x > 0.95 * PEANO
 
 
 def test_the_largest_position_step_is_reached() -> None:
