@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import pytest
@@ -10,6 +11,11 @@ from state_support import Run
 
 from bench.random_commands import inputs_of
 from cnc_ptp.machine.offline import OfflineMachine
+from cnc_ptp.machine.plc_file import read_plc
+from cnc_ptp.machine.run_entries import read_entries
+from cnc_ptp.machine.wiring import build_units
+from cnc_ptp.parameters import MachineParameters
+from cnc_ptp.protocol.unit import Unit
 from cnc_ptp.recording.motion_check.check import check_motion
 from figures.scenario_head import read_head
 
@@ -77,12 +83,19 @@ def of_figure(path: Any) -> Run:
     return Run(head.machine, program, str(path.relative_to(ROOT)), plc=plc)
 
 
+def units_of(run: Run, machine: MachineParameters) -> Mapping[str, Unit]:
+    """The scenario of a figure may be its head alone."""
+    program, scenario = (str(ROOT / name) if name else None for name in (run.program, run.scenario))
+    entries = read_entries(machine, program=program, scenario=scenario, dialect=run.dialect, may_be_empty=True)
+    return build_units(machine, scenario=entries, plc_file=read_plc(str(ROOT / run.plc)) if run.plc else None)
+
+
 @pytest.mark.parametrize("run", [*RUNS, *map(of_figure, FIGURES)], ids=lambda run: run.name)
 def test_an_example_has_no_violation(run: Run) -> None:
     machine = run.parameters()
     blocks: dict[str, list[Any]] = {}
     records = []
-    for outputs in OfflineMachine(machine, run.units(machine)).run():
+    for outputs in OfflineMachine(machine, units_of(run, machine)).run():
         for name, output in outputs.items():
             blocks.setdefault(name, []).append(output.block)
             records += output.records

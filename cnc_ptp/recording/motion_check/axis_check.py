@@ -91,7 +91,7 @@ class AxisCheck:
         return found
 
     def _take_orders(self) -> Numbers:
-        """Limits that come with commands; returns those of falling |v| without abrupt stops (n,)."""
+        """Limits that come with commands; returns those of falling |v| in rows of abrupt stops, inf elsewhere (n,)."""
         laws, extra = self.laws, {name: self._additions(name) for name in ADDED}
         abrupt = laws.reduction.copy()
         for order in self.orders:
@@ -103,7 +103,8 @@ class AxisCheck:
                     column[rows] = np.maximum(column[rows], order.number(name))
             if order.command == "begin_trajectory":
                 self._take_trajectory(rows, order)
-        calm = laws.reduction + sum(acceleration for acceleration, _ in extra.values())
+        raised = abrupt > laws.reduction
+        calm = np.where(raised, laws.reduction + sum(acceleration for acceleration, _ in extra.values()), inf)
         laws.reduction = np.maximum(laws.reduction, abrupt)
         for acceleration, jerk in extra.values():
             laws.growth, laws.reduction = laws.growth + acceleration, laws.reduction + acceleration

@@ -12,7 +12,7 @@ from cnc_ptp.recording.motion_check.laws import Laws
 def check_limits(points: Setpoints, laws: Laws, found: Findings, calm: Numbers | None = None) -> None:
     """|v| and |a| of each row; a larger |a| that falls is on its way to the limit.
 
-    `calm`: limits of falling |v| without abrupt stops; what exceeds only these was told.
+    `calm`: what would be the limits of falling |v| without an abrupt stop; what exceeds only these was told.
     """
     v, a, unit = np.abs(points.velocity), np.abs(points.acceleration), points.length
     allowed = laws.velocity * (1.0 + laws.relative) + PLACES * np.spacing(v)
@@ -22,7 +22,7 @@ def check_limits(points: Setpoints, laws: Laws, found: Findings, calm: Numbers |
     over = ~(a <= bound * slack + PLACES * np.spacing(a))
     found.above("acceleration", points.acceleration, bound, over, f"{unit}/s²")
     if calm is not None:
-        usual = np.minimum(bound, np.maximum(calm, _bound(points, laws.growth, calm)))
+        usual = np.minimum(bound, np.maximum(calm, laws.growth))
         told = ~over & ~(a <= usual * slack + PLACES * np.spacing(a))
         found.above("deceleration of an abrupt stop", points.acceleration, usual, told, f"{unit}/s²", told=True)
 
