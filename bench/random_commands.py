@@ -19,6 +19,7 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import fields
 from functools import cache
 from pathlib import Path
@@ -34,7 +35,7 @@ from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, Command, CommandRecord, SpindleBlock
 from cnc_ptp.protocol.commands import COMMANDS, INTERNAL, THROUGH_PLC, Argument
-from cnc_ptp.protocol.unit import PLC
+from cnc_ptp.protocol.unit import PLC, Unit
 from cnc_ptp.recording.computed_again import commands_by_cycle, computed_again, fresh_machine
 from cnc_ptp.recording.motion_check.check import check_motion
 from cnc_ptp.recording.motion_check.inputs import (
@@ -45,6 +46,7 @@ from cnc_ptp.recording.motion_check.inputs import (
     in_order,
     orders_by_unit,
 )
+from cnc_ptp.spindle.spindle_unit import SpindleUnit
 from cnc_ptp.state.machine_state import StateStore
 
 ROOT = Path(__file__).parents[1]
@@ -200,6 +202,7 @@ class CommandedMachine:
             return
         of = self.units[unit]
         before, events = self.state(), len(of.events)
+        number = of.next_number if isinstance(of, SpindleUnit) else 0
         record = self.offline.runner(unit).command(asked)
         if record.accepted:
             return
@@ -207,10 +210,8 @@ class CommandedMachine:
         if UNCHANGED not in record.message:
             self.require("ErrorStop" in record.message, f"{unit} {command} {arguments}: {record.message}")
             return
-        kept, of.events[events:] = (of.records.pop(), of.events[events:]), []
-        after = self.state()
-        of.records.append(kept[0])
-        of.events.extend(kept[1])
+        with without_record(of, events, number):
+            after = self.state()
         self.require(before == after, f"{unit} {command} {arguments} changed something: {record.message}")
 
     def state(self) -> bytes:
@@ -279,6 +280,22 @@ class CommandedMachine:
                     self.require(repr(output.block) == repr(first), difference(name, first, output.block))
             if self.violations:
                 return
+
+
+@contextmanager
+def without_record(unit: Unit, events: int, number: int) -> Iterator[None]:
+    """A unit without what a refused command leaves: its record, the event behind the first `events`, its number.
+
+    `number` is that of the next command of a spindle, which counts those that are refused too.
+    """
+    record, told, unit.events[events:] = unit.records.pop(), unit.events[events:], []
+    if isinstance(unit, SpindleUnit):
+        unit.next_number, number = number, unit.next_number
+    yield
+    if isinstance(unit, SpindleUnit):
+        unit.next_number = number
+    unit.records.append(record)
+    unit.events.extend(told)
 
 
 def difference(name: str, first: Any, second: Any) -> str:

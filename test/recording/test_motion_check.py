@@ -253,7 +253,8 @@ def test_fields_that_were_not_recorded(path: Path, monkeypatch: pytest.MonkeyPat
 
 def test_a_missing_file(tmp_path: Path) -> None:
     path = tmp_path / "none.mcap"
-    assert refused(path) == f"P-ERR-26001 recording {path}: does not exist; nothing was read"
+    reason = "cannot be opened: No such file or directory; nothing was read, check the path"
+    assert refused(path) == f"P-ERR-26001 recording {path}: {reason}"
 
 
 def test_a_foreign_file(tmp_path: Path) -> None:

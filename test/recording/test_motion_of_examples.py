@@ -25,7 +25,6 @@ RUNS = [
     Run("config/mill.yaml", "examples/bracket.nc", "examples/bracket_overrides.yaml"),
     Run("config/mill.yaml", "examples/pocket.nc"),
     Run("config/mill.yaml", "examples/cover.nc"),
-    Run("config/mill.yaml", "examples/tolerance.nc"),
     Run("config/mill.yaml", "examples/tuning.nc"),
     Run("config/mill.yaml", "examples/tapping.nc"),
     Run("config/mill.yaml", "examples/plate.ngc", dialect="iso"),

@@ -148,9 +148,11 @@ def _commands(recording: OpenRecording) -> list[tuple[int, str, str, str, bool]]
 def _machine(recording: OpenRecording) -> MachineParameters:
     try:
         text = recording.attached(MACHINE_FILE)
-    except CncError as error:
+    except CncError:
+        text = ""
+    if not text:
         reason = f"recording {recording.path}: holds no attachment {MACHINE_FILE}, which has the limits"
-        raise CncError(NO_PARAMETERS, reason, UNCHECKED) from error
+        raise CncError(NO_PARAMETERS, reason, UNCHECKED)
     return load_machine(text, f"{recording.path}:{MACHINE_FILE}")
 
 
