@@ -35,7 +35,7 @@ from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, Command, CommandRecord, SpindleBlock
 from cnc_ptp.protocol.commands import COMMANDS, INTERNAL, THROUGH_PLC, Argument
-from cnc_ptp.protocol.unit import PLC, Unit
+from cnc_ptp.protocol.unit import A_CLIENT, PLC, Unit
 from cnc_ptp.recording.computed_again import commands_by_cycle, computed_again, fresh_machine
 from cnc_ptp.recording.motion_check.check import check_motion
 from cnc_ptp.recording.motion_check.inputs import (
@@ -201,8 +201,7 @@ class CommandedMachine:
                 self.counts["refused"] += 1
             return
         of = self.units[unit]
-        before, events = self.state(), len(of.events)
-        number = of.next_number if isinstance(of, SpindleUnit) else 0
+        before, left = self.state(), Record(of)
         record = self.offline.runner(unit).command(asked)
         if record.accepted:
             return
@@ -210,14 +209,14 @@ class CommandedMachine:
         if UNCHANGED not in record.message:
             self.require("ErrorStop" in record.message, f"{unit} {command} {arguments}: {record.message}")
             return
-        with without_record(of, events, number):
+        with left.taken_away():
             after = self.state()
         self.require(before == after, f"{unit} {command} {arguments} changed something: {record.message}")
 
     def state(self) -> bytes:
         """All units as bytes, without what is kept from one command to the next for its record alone."""
         for unit in self.units.values():
-            unit._warning, unit._warning_id, unit._values = "", 0, {}
+            unit._warning, unit._warning_id, unit._values, unit._given_by = "", 0, {}, A_CLIENT
         return self.store.encode(self.offline, with_plc=True)
 
     def tick(self, blocks: int) -> None:
@@ -276,26 +275,46 @@ class CommandedMachine:
         for number, outputs in enumerate(again):
             for name, output in outputs.items():
                 if name != PLC:
-                    first = self.blocks[name][number]
-                    self.require(repr(output.block) == repr(first), difference(name, first, output.block))
+                    self.compare(name, self.blocks[name][number], output.block)
             if self.violations:
                 return
 
+    def compare(self, name: str, first: Any, second: Any) -> None:
+        """Bit by bit; answers are for the PLC that has given the commands, which is not there in a replay."""
+        names = [each.name for each in fields(first) if each.name != "answers"]
+        parted = [each for each in names if repr(getattr(first, each)) != repr(getattr(second, each))]
+        self.require(not parted, f"replay differs: {name} from cycle {first.first_cycle} in {', '.join(parted)}")
 
-@contextmanager
-def without_record(unit: Unit, events: int, number: int) -> Iterator[None]:
-    """A unit without what a refused command leaves: its record, the event behind the first `events`, its number.
 
-    `number` is that of the next command of a spindle, which counts those that are refused too.
-    """
-    record, told, unit.events[events:] = unit.records.pop(), unit.events[events:], []
-    if isinstance(unit, SpindleUnit):
-        unit.next_number, number = number, unit.next_number
-    yield
-    if isinstance(unit, SpindleUnit):
-        unit.next_number = number
-    unit.records.append(record)
-    unit.events.extend(told)
+class Record:
+    """What a refused command leaves in its unit: record and event; in a spindle also its number and its answer."""
+
+    def __init__(self, unit: Unit) -> None:
+        """Before the command is given."""
+        self._unit, self._events = unit, len(unit.events)
+        self._of_spindle = self._spindle()
+
+    def _spindle(self) -> tuple[Any, ...]:
+        unit = self._unit
+        if not isinstance(unit, SpindleUnit):
+            return ()
+        return unit.next_number, unit._job_given, unit._turned_down, [*unit._refused]
+
+    def _put(self, of_spindle: tuple[Any, ...]) -> None:
+        if isinstance(self._unit, SpindleUnit):
+            unit = self._unit
+            unit.next_number, unit._job_given, unit._turned_down, unit._refused[:] = of_spindle
+
+    @contextmanager
+    def taken_away(self) -> Iterator[None]:
+        """For a while the unit does not have it."""
+        unit, now = self._unit, self._spindle()
+        record, told, unit.events[self._events :] = unit.records.pop(), unit.events[self._events :], []
+        self._put(self._of_spindle)
+        yield
+        self._put(now)
+        unit.records.append(record)
+        unit.events.extend(told)
 
 
 def difference(name: str, first: Any, second: Any) -> str:
