@@ -8,7 +8,7 @@ from machine_support import spindle_bench
 def test_a_source_that_is_no_text_gets_no_answer_in_the_block() -> None:
     bench = spindle_bench()
     text = bench.refused("start", direction="cw", speed_rpm=100.0, source=1e300)
-    assert text == "P-ERR-22001 spindle s: start refused: source = 1e+300 is not a text; nothing was changed"
+    assert text == "P-ERR-22001 spindle s: start refused: source = 1e+300 is not a source; nothing was changed"
     bench.run(10)
     assert bench.last.refused == []
 
