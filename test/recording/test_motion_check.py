@@ -158,6 +158,16 @@ def test_an_axis_that_starts_behind_a_stop(inputs: MotionInputs) -> None:
     assert (violation.unit, violation.what) == ("y", "moves although it was stopped")
 
 
+def test_soft_limits_move_with_set_position(tmp_path: Path) -> None:
+    """Seed 33 of `bench.random_commands`: at cycle 0 there is no cycle before from which the shift could be read."""
+    scenario = """
+- {at: 0.0, to: x, do: set_position, position: 150, relative: true}
+- {at: 0.1, to: x, do: move_relative, distance: 5}
+"""
+    path = make_run(tmp_path / "run.mcap", scenario, machine=ROOT / "config" / "ptp.yaml")
+    assert check_recording(path).violations == []
+
+
 def test_an_abrupt_stop_is_told(tmp_path: Path) -> None:
     scenario = """
 - {at: 0.0, to: x, do: move_absolute, target: 50, velocity: 200}

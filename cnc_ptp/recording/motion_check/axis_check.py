@@ -221,7 +221,7 @@ class AxisCheck:
             rows = slice(self.stretches.row(order.cycle), None)
             low[rows], high[rows] = parameters.soft_limit_negative, parameters.soft_limit_positive
         shift = self._shift()
-        free = ~self.referenced | self.error | since(self.led | self.external, self.resting)
+        free = ~self.referenced | self.error | since(self.led | self.external, self.resting) | self._unknown_shift()
         blur = PLACES * np.spacing(np.abs(points.position) + np.abs(shift))
         blur += np.where(shift != 0.0, own.jerk * points.cycle_time**3, 0.0)
         dx = np.concatenate(([0.0], np.where(self.laws.placed, 0.0, np.diff(points.position))))
@@ -236,13 +236,21 @@ class AxisCheck:
         points, steps = self.points, np.zeros(len(self.cycles))
         for order in self.orders:
             row = self.stretches.row(order.cycle)
-            if order.command == "set_position" and 0 < row < len(self.cycles):
+            if order.command == "set_position" and row == 0 and self.cycles[0] == 0:
+                steps[0] = points.position[0] - self.parameters.start_position
+            elif order.command == "set_position" and 0 < row < len(self.cycles):
                 moved = 0.5 * points.cycle_time * (points.velocity[row - 1] + points.velocity[row])
                 steps[row] = points.position[row] - points.position[row - 1] - moved
         shift = np.cumsum(steps)
         for row in np.flatnonzero(self.referenced[1:] & ~self.referenced[:-1]) + 1:
             shift[row:] -= shift[row]
         return shift
+
+    def _unknown_shift(self) -> Mask:
+        """Of a recording that begins behind a set_position nobody knows where the soft limits are."""
+        shifted: Mask = (self.columns["status_bits"].astype(np.int64) & B.COORDINATES_SHIFTED) != 0
+        late = self.cycles[0] > 0 and shifted[0]
+        return shifted if late else np.zeros(len(self.cycles), dtype=bool)
 
     # couplings
 
