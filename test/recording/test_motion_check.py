@@ -169,12 +169,16 @@ def test_soft_limits_move_with_set_position(tmp_path: Path) -> None:
 
 
 def test_an_abrupt_stop_is_told(tmp_path: Path) -> None:
+    """Its deceleration is above A- of the axis (2400 mm/s²), within P-AXIS-00008: told, and no violation."""
     scenario = """
-- {at: 0.0, to: x, do: move_absolute, target: 50, velocity: 200}
-- {at: 0.3, to: x, do: emergency_stop, deceleration: 4500, jerk: 90000}
+- {at: 0.0, to: x, do: move_absolute, target: 100, velocity: 200, acceleration: 500, deceleration: 500}
+- {at: 0.3, to: x, do: emergency_stop, deceleration: 2800, jerk: 90000}
 """
     result = check_recording(make_run(tmp_path / "run.mcap", scenario))
     assert result.violations == []
+    (told,) = result.told
+    assert (told.unit, told.what) == ("x", "deceleration of an abrupt stop")
+    assert (told.value, told.limit) == (-2800.0, 2400.0)
 
 
 # closed forms
