@@ -279,6 +279,30 @@ def replay_command(**options: Any) -> None:
     sys.exit(replay(**options))
 
 
+@main.command("verify")
+@RECORDING
+@click.option(
+    "--motion", is_flag=True, help="Check the motion by its numbers alone: continuity, limits, power, owners."
+)
+@click.option("--json", "as_json", is_flag=True, help="With --motion: everything that was found as JSON.")
+def verify_command(recording: str, *, motion: bool, as_json: bool) -> None:
+    """Compute a recorded run again to the bit, or check its motion.
+
+    With --motion nothing is computed again: the setpoints of each cycle are integrated and compared with the next one,
+    within bounds that follow from the machine file and from the commands of the recording. Status 1 when anything
+    differs or exceeds a limit.
+    """
+    if motion:
+        from cnc_ptp.commands.look.verify import verify_motion
+
+        sys.exit(verify_motion(recording, as_json=as_json))
+    if as_json:
+        raise click.UsageError("--json is an option of --motion; nothing was verified")
+    from cnc_ptp.commands.run.replay import replay
+
+    sys.exit(replay(recording, verify=True, publish=False, rate=1.0))
+
+
 @main.command("diff")
 @click.argument("first", type=click.Path())
 @click.argument("second", type=click.Path())

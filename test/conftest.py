@@ -9,6 +9,8 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 HERE = Path(__file__).parent
+MOTION = pytest.StashKey[str]()
+"""What was checked of the motion of recordings."""
 sys.path[:0] = [str(HERE / "support"), str(HERE.parent)]
 
 settings.register_profile("project", deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
@@ -31,6 +33,45 @@ def only_transitions_of_the_table() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(transitions, "strict", True)
         yield
+
+
+@pytest.fixture(autouse=True, scope="session")
+def recorded_motion(tmp_path_factory: pytest.TempPathFactory, pytestconfig: pytest.Config) -> Iterator[Any]:
+    """Knows each folder that tests get."""
+    from recorded_motion import RecordedMotion
+
+    motion = RecordedMotion()
+    make = tmp_path_factory.mktemp
+
+    def mktemp(basename: str, numbered: bool = True) -> Path:
+        folder = make(basename, numbered)
+        motion.folders.append(folder)
+        return folder
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(tmp_path_factory, "mktemp", mktemp)
+        yield motion
+    pytestconfig.stash[MOTION] = motion.summary()
+
+
+@pytest.fixture(autouse=True)
+def motion_of_recordings(recorded_motion: Any, request: pytest.FixtureRequest) -> Iterator[None]:
+    """No recording of the test has a step, exceeds a limit or moves without power (recording/motion_check).
+
+    `motion_unchecked("why")` marks a test that bends recordings on purpose.
+    """
+    yield
+    if not recorded_motion.folders:
+        return
+    files = recorded_motion.new_files()
+    if request.node.get_closest_marker("motion_unchecked") is None:
+        found = recorded_motion.violations(files)
+        assert not found, "\n".join(found)
+
+
+def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
+    if MOTION in config.stash:
+        terminalreporter.write_line(config.stash[MOTION])
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -1,0 +1,392 @@
+"""`python -m bench.random_commands [STEPS] [SEED]`: random commands in random states; no invariant may break.
+
+A machine runs offline. Each step is a command with random arguments, good and bad ones, to an axis, a spindle, a
+channel or the PLC, or some blocks of time. What must hold:
+
+- a refusal that says that nothing was changed leaves the state of all units as it was, bit by bit,
+- states exclude each other, a path has one owner, every job ends once,
+- the motion keeps to its limits and has no step, what is stopped stays stopped (recording/motion_check),
+- the run computed again from its recorded commands is equal to the bit.
+
+A machine lives for some hundred steps; its seed is printed with each violation and makes it again.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+import sys
+import time
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import fields
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.offline import OfflineMachine
+from cnc_ptp.machine.wiring import build_units, unit_kinds
+from cnc_ptp.parameters import MachineParameters, read_machine
+from cnc_ptp.plc.plc_unit import PlcUnit
+from cnc_ptp.protocol.axis_states import AxisStateCode as S
+from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, Command, CommandRecord, SpindleBlock
+from cnc_ptp.protocol.commands import COMMANDS, INTERNAL, THROUGH_PLC, Argument
+from cnc_ptp.protocol.unit import A_CLIENT, PLC, Unit
+from cnc_ptp.recording.computed_again import commands_by_cycle, computed_again, fresh_machine
+from cnc_ptp.recording.motion_check.check import check_motion
+from cnc_ptp.recording.motion_check.inputs import (
+    AXIS_FIELDS,
+    SPINDLE_FIELDS,
+    Columns,
+    MotionInputs,
+    in_order,
+    orders_by_unit,
+)
+from cnc_ptp.spindle.spindle_unit import SpindleUnit
+from cnc_ptp.state.machine_state import StateStore
+
+ROOT = Path(__file__).parents[1]
+MACHINES = ("config/mill.yaml", "config/lathe.yaml", "config/ptp.yaml", "config/gantry.yaml")
+LIFE = 300
+"""Steps of a machine."""
+UNCHANGED = ("nothing was changed", "nothing was executed")
+"""What a refusal says that leaves everything as it was."""
+POWERED = 0.9
+"""Share of axes and spindles that have power from the start."""
+LEFT_OUT = INTERNAL | {"write_drive_parameter", "read_drive_parameter", "write_parameter", "serve", "set_life_sign"}
+"""Commands of other units, and those that change what the checker takes from the machine file."""
+BAD = (math.nan, math.inf, -math.inf, 1e300, -1e300, 0.0, -0.0, "1", None, True, [], {})
+NUMBERS: Mapping[str, tuple[float, float]] = {
+    "target": (-150.0, 150.0),
+    "distance": (-80.0, 80.0),
+    "position": (-150.0, 150.0),
+    "velocity": (1.0, 400.0),
+    "acceleration": (50.0, 4000.0),
+    "deceleration": (50.0, 4000.0),
+    "jerk": (1000.0, 90_000.0),
+    "percent": (0.0, 120.0),
+    "velocity_difference": (1.0, 50.0),
+    "speed_rpm": (1.0, 4000.0),
+    "position_deg": (-720.0, 720.0),
+    "factor": (-2.0, 2.0),
+    "acc_bound": (100.0, 9000.0),
+    "difference_limit": (0.1, 20.0),
+    "length": (1.0, 60.0),
+    "difference": (-10.0, 10.0),
+    "process_velocity": (1.0, 200.0),
+    "velocity_increase": (1.0, 100.0),
+    "activation_position": (-150.0, 150.0),
+    "master_position": (-150.0, 150.0),
+    "slave_position": (-150.0, 150.0),
+    "factor_num": (1.0, 3.0),
+    "factor_den": (1.0, 3.0),
+    "max_speed_rpm": (100.0, 5000.0),
+    "min_speed_rpm": (0.0, 50.0),
+    "max_acceleration": (1000.0, 30_000.0),
+}
+PROGRAMS = (
+    "N10 G01 X10 F1000\nN20 G01 X-10 Z-5\nN30 G00 X0 Z0\nM30\n",
+    "N10 G00 X5\nN20 M03 S500\nN30 G04 0.1\nN40 G01 X20 F3000\nN50 M05\nM30\n",
+    "N10 G02 X10 I5 F2000\nN20 M00\nN30 G01 X0\nM30\n",
+    "N10 G01 X1e9\n",
+    "N10 G01 X[\n",
+)
+
+
+@cache
+def machine_of(path: str) -> MachineParameters:
+    return read_machine(str(ROOT / path))
+
+
+class CommandedMachine:
+    """A machine with the commands, blocks and violations of its run."""
+
+    def __init__(self, seed: int, machine: str = "") -> None:
+        """`machine`: file below the repository; the seed chooses one of MACHINES without it."""
+        self.seed, self.random = seed, random.Random(seed)
+        self.machine = machine_of(machine or self.random.choice(MACHINES))
+        self.units = build_units(self.machine, end_when_idle=False)
+        self.offline = OfflineMachine(self.machine, self.units)
+        self.kinds = unit_kinds(self.machine)
+        self.store = StateStore(self.machine)
+        self.blocks: dict[str, list[Any]] = {name: [] for name in self.units}
+        self.records: list[CommandRecord] = []
+        self.violations: list[str] = []
+        self.counts: Counter[str] = Counter()
+        for name, kind in self.kinds.items():
+            if kind in ("axis", "spindle") and self.random.random() < POWERED:
+                self.offline.runner(name).command(Command(name, "power", {"enabled": True}))
+
+    # steps
+
+    def step(self) -> None:
+        """A command, or time."""
+        if self.random.random() < 0.3:
+            self.tick(self.random.choice((1, 1, 2, 5, 20, 60)))
+        else:
+            self.random_command()
+
+    def random_command(self) -> None:
+        unit = self.random.choice([*self.kinds])
+        kind = self.kinds[unit]
+        command = self.random.choice([name for name in COMMANDS[kind] if name not in LEFT_OUT])
+        self.give(unit, command, self.arguments(unit, command))
+
+    def arguments(self, unit: str, command: str) -> dict[str, Any]:
+        """Random ones: mostly good, sometimes missing, surplus or of another type."""
+        chance, given = self.random, {}
+        for name, argument in COMMANDS[self.kinds[unit]][command].items():
+            if not argument.required and chance.random() < 0.6:
+                continue
+            given[name] = chance.choice(BAD) if chance.random() < 0.04 else self.value(unit, name, argument)
+        if chance.random() < 0.02 and given:
+            given.pop(chance.choice([*given]))
+        if chance.random() < 0.01:
+            given["surplus"] = 1
+        return given
+
+    def value(self, unit: str, name: str, argument: Argument) -> Any:
+        """A good value of one argument."""
+        chance, kind = self.random, argument.kind
+        if argument.choices:
+            return chance.choice(argument.choices)
+        if kind == "number":
+            low, high = NUMBERS.get(name, (-10.0, 10.0))
+            return chance.choice((0.0, low, high, chance.uniform(low, high), chance.uniform(low, high)))
+        if kind == "integer":
+            return chance.choice((0, 1, 2, 3, 7))
+        if kind == "switch":
+            return chance.random() < 0.6
+        if kind == "rows":
+            return self.rows(unit, name)
+        return self.text(unit, name)
+
+    def text(self, unit: str, name: str) -> Any:
+        chance = self.random
+        if name == "text":
+            return chance.choice(PROGRAMS)
+        if name == "master":
+            return chance.choice([other for other in self.kinds if self.kinds[other] == self.kinds[unit]])
+        if name in ("source", "owner"):
+            return chance.choice([PLC, *self.machine.channels, "nobody"])
+        if name == "axis":
+            return chance.choice(["X", "Y", "Z"])
+        return chance.choice(["", "x", "part.nc"])
+
+    def rows(self, unit: str, name: str) -> list[Any]:
+        chance = self.random
+        if name == "axes":
+            return [chance.choice([*self.machine.axes])]
+        if name == "points":
+            return [[0.2 * n, [chance.uniform(-1.0, 1.0)], [0.0]] for n in range(3)]
+        if name == "setpoints":
+            begin, place = self.offline.next_cycle + 20, self.position(unit)
+            return [[begin + n, place + 0.001 * n * n, 0.002 * n / 0.001, 0.0, 1] for n in range(5)]
+        if name == "table":
+            return [[0.0, 0.0], [10.0, 5.0], [20.0, 0.0], [40.0, 1.0]]
+        return []
+
+    def position(self, unit: str) -> float:
+        blocks = self.blocks[unit]
+        return float(blocks[-1].set_position[-1]) if blocks and isinstance(blocks[-1], AxisBlock) else 0.0
+
+    def give(self, unit: str, command: str, arguments: dict[str, Any]) -> None:
+        """One command; what goes through the PLC is carried out in the next block."""
+        asked = Command(unit, command, arguments)
+        self.counts["commands"] += 1
+        if self.kinds[unit] == "axis" and command in THROUGH_PLC:
+            plc = self.units[PLC]
+            assert isinstance(plc, PlcUnit)
+            try:
+                plc.input(asked)
+            except CncError:
+                self.counts["refused"] += 1
+            return
+        of = self.units[unit]
+        before, left = self.state(), Record(of)
+        record = self.offline.runner(unit).command(asked)
+        if record.accepted:
+            return
+        self.counts["refused"] += 1
+        if not any(text in record.message for text in UNCHANGED):
+            self.require("ErrorStop" in record.message, f"{unit} {command} {arguments}: {record.message}")
+            return
+        with left.taken_away():
+            after = self.state()
+        self.require(before == after, f"{unit} {command} {arguments} changed something: {record.message}")
+
+    def state(self) -> bytes:
+        """All units as bytes, without what is kept from one command to the next for its record alone."""
+        for unit in self.units.values():
+            unit._warning, unit._warning_id, unit._values, unit._given_by = "", 0, {}, A_CLIENT
+        return self.store.encode(self.offline, with_plc=True)
+
+    def tick(self, blocks: int) -> None:
+        for _ in range(blocks):
+            outputs = self.offline.tick()
+            self.counts["blocks"] += 1
+            for name, output in outputs.items():
+                self.blocks[name].append(output.block)
+                self.records += output.records
+                self.check_block(name, output.block)
+            self.check_owners(outputs)
+
+    # invariants
+
+    def require(self, holds: bool, text: str) -> None:
+        if not holds:
+            self.violations.append(f"seed {self.seed} cycle {self.offline.next_cycle}: {text}")
+
+    def check_block(self, name: str, block: Any) -> None:
+        """Error and ErrorStop go together; without power there is no job."""
+        if not isinstance(block, (AxisBlock, SpindleBlock)):
+            return
+        speeds = block.set_velocity if isinstance(block, AxisBlock) else block.set_speed_rpm
+        self.counts["blocks of units in motion"] += any(speeds)
+        for state, error in zip(block.state, block.error_id, strict=True):
+            self.require(
+                (state == S.ERROR_STOP) == (error != 0) or self.is_pair(block), f"{name} {state} error {error}"
+            )
+        self.require(block.state[-1] != S.DISABLED or not block.job, f"{name} without power has job {block.job}")
+
+    def is_pair(self, block: Any) -> bool:
+        """A gantry slave in error follows its master to the end."""
+        return isinstance(block, AxisBlock) and bool(block.master)
+
+    def check_owners(self, outputs: Mapping[str, Any]) -> None:
+        """No axis is on two paths; one in SynchronizedMotion has a master or a path."""
+        blocks = [output.block for output in outputs.values() if isinstance(output.block, ChannelBlock)]
+        taken = [axis for block in blocks if block.path_active for axis in block.axes]
+        self.require(len(taken) == len(set(taken)), f"axes on two paths: {taken}")
+        for name, output in outputs.items():
+            block = output.block
+            if isinstance(block, AxisBlock) and block.state[-1] == S.SYNCHRONIZED_MOTION:
+                self.require(bool(block.master) or name in taken, f"{name} is led by nobody")
+
+    def finish(self) -> list[str]:
+        """Comes to rest, then motion and replay are checked; all violations of the run."""
+        self.offline.stop()
+        self.tick(100)
+        result = check_motion(inputs_of(self.machine, self.blocks, self.records))
+        self.violations += [f"seed {self.seed}: {violation}" for violation in result.violations]
+        self.check_replay()
+        return self.violations
+
+    def check_replay(self) -> None:
+        """The same blocks again from the recorded commands."""
+        commands = commands_by_cycle(self.records, self.machine)
+        again = computed_again(fresh_machine(self.machine), commands, self.offline.next_cycle)
+        for number, outputs in enumerate(again):
+            for name, output in outputs.items():
+                if name != PLC:
+                    self.compare(name, self.blocks[name][number], output.block)
+            if self.violations:
+                return
+
+    def compare(self, name: str, first: Any, second: Any) -> None:
+        """Bit by bit; answers are for the PLC that has given the commands, which is not there in a replay."""
+        names = [each.name for each in fields(first) if each.name != "answers"]
+        parted = [each for each in names if written(getattr(first, each)) != written(getattr(second, each))]
+        self.require(not parted, f"replay differs: {name} from cycle {first.first_cycle} in {', '.join(parted)}")
+
+
+def written(value: Any) -> str:
+    """Every bit of a field; arguments of commands in any order."""
+    if isinstance(value, list) and value and isinstance(value[0], Command):
+        return str([(each.target, each.command, each.arguments_json, each.id) for each in value])
+    return repr(value)
+
+
+class Record:
+    """What a refused command leaves in its unit: record and event; in a spindle also its number and its answer."""
+
+    def __init__(self, unit: Unit) -> None:
+        """Before the command is given."""
+        self._unit, self._events = unit, len(unit.events)
+        self._of_spindle = self._spindle()
+
+    def _spindle(self) -> tuple[Any, ...]:
+        unit = self._unit
+        if not isinstance(unit, SpindleUnit):
+            return ()
+        return unit.next_number, unit._job_given, unit._turned_down, [*unit._refused]
+
+    def _put(self, of_spindle: tuple[Any, ...]) -> None:
+        if isinstance(self._unit, SpindleUnit):
+            unit = self._unit
+            unit.next_number, unit._job_given, unit._turned_down, unit._refused[:] = of_spindle
+
+    @contextmanager
+    def taken_away(self) -> Iterator[None]:
+        """For a while the unit does not have it."""
+        unit, now = self._unit, self._spindle()
+        record, told, unit.events[self._events :] = unit.records.pop(), unit.events[self._events :], []
+        self._put(self._of_spindle)
+        yield
+        self._put(now)
+        unit.records.append(record)
+        unit.events.extend(told)
+
+
+def difference(name: str, first: Any, second: Any) -> str:
+    parted = [
+        each.name for each in fields(first) if repr(getattr(first, each.name)) != repr(getattr(second, each.name))
+    ]
+    return f"replay differs: {name} from cycle {first.first_cycle} in {', '.join(parted)}"
+
+
+def inputs_of(
+    machine: MachineParameters, blocks: Mapping[str, list[Any]], records: list[CommandRecord]
+) -> MotionInputs:
+    """A run as the checker reads it from a recording; `blocks` by unit."""
+    commands = [(r.cycle, r.target, r.command, r.arguments_json, r.accepted) for r in records]
+    inputs = MotionInputs(machine, machine.cycle_time_us * 1e-6, orders=orders_by_unit(commands))
+    for name in machine.axes:
+        inputs.axes[name] = columns_of(blocks[name], AXIS_FIELDS)
+    for name in machine.spindles:
+        inputs.spindles[name] = columns_of(blocks[name], SPINDLE_FIELDS)
+    for name in machine.channels:
+        inputs.channels[name] = columns_of(blocks[name], ("cycle",))["cycle"]
+    return inputs
+
+
+def columns_of(blocks: list[Any], names: tuple[str, ...]) -> Columns:
+    """Of the blocks of one unit."""
+    cycles = [np.arange(block.first_cycle, block.first_cycle + block.count) for block in blocks]
+    columns = {name: np.array([v for b in blocks for v in getattr(b, name)]) for name in names if name != "cycle"}
+    return in_order({"cycle": np.concatenate(cycles), **columns})
+
+
+def lives(steps: int, seed: int) -> Iterator[CommandedMachine]:
+    """Machines one after the other until `steps` are done; each was checked."""
+    for begin in range(0, steps, LIFE):
+        machine = CommandedMachine(seed + begin // LIFE)
+        for _ in range(min(LIFE, steps - begin)):
+            machine.step()
+        machine.finish()
+        yield machine
+
+
+def main(arguments: list[str]) -> int:
+    """Status 1 with a violation."""
+    steps, seed = (
+        (int(word) for word in (*arguments, "3000", "1")[:2]) if len(arguments) != 1 else (int(arguments[0]), 1)
+    )
+    begin, total, found = time.monotonic(), Counter[str](), 0
+    for machine in lives(steps, seed):
+        total += machine.counts
+        for text in machine.violations[:5]:
+            print(text, flush=True)
+        found += bool(machine.violations)
+    seconds = time.monotonic() - begin
+    counted = ", ".join(f"{number} {name}" for name, number in sorted(total.items()))
+    print(f"{steps} steps from seed {seed} in {seconds:.0f} s: {counted}; machines with a violation: {found}")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

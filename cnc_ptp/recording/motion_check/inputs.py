@@ -1,0 +1,175 @@
+"""What the checker reads: the states of a unit as columns, accepted commands, parameters."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.parameters import MachineParameters, load_machine
+from cnc_ptp.recording.opened import OpenRecording
+from cnc_ptp.recording.origin import FOREIGN
+from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, SPINDLE_STATE
+from cnc_ptp.recording.writer import MACHINE_FILE
+
+NO_SETPOINTS = 26262
+NO_PARAMETERS = 26263
+LACKS_FIELDS = 26264
+UNCHECKED = "no motion was checked"
+CYCLE_TIME_NS = 1_000_000
+"""Of a recording that does not say its own."""
+
+Column = npt.NDArray[Any]
+Columns = Mapping[str, Column]
+AXIS_FIELDS = (
+    "cycle",
+    "set_position",
+    "set_velocity",
+    "set_acceleration",
+    "set_jerk",
+    "actual_position",
+    "actual_velocity",
+    "state",
+    "status_bits",
+    "error_id",
+)
+SPINDLE_FIELDS = (
+    "cycle",
+    "set_speed_rpm",
+    "set_acceleration_deg_s2",
+    "set_position_deg",
+    "actual_speed_rpm",
+    "gear",
+    "referenced",
+    "state",
+    "status_bits",
+    "error_id",
+)
+COMMAND_FIELDS = ("cycle", "target", "command", "arguments_json", "accepted")
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """A command that was carried out at `cycle`."""
+
+    cycle: int
+    command: str
+    arguments: Mapping[str, Any]
+
+    def number(self, name: str) -> float:
+        """A positive number among the arguments, also as text (inf); 0.0 if there is none."""
+        try:
+            value = float(self.arguments.get(name) or 0.0)
+        except (TypeError, ValueError):
+            return 0.0
+        return value if value > 0.0 else 0.0
+
+
+@dataclass(slots=True)
+class MotionInputs:
+    """Of one run: machine, cycle time in s, the states of each axis, spindle and channel, orders by unit."""
+
+    machine: MachineParameters
+    cycle_time: float
+    axes: dict[str, Columns] = field(default_factory=dict)
+    spindles: dict[str, Columns] = field(default_factory=dict)
+    channels: dict[str, Column] = field(default_factory=dict)
+    """The recorded cycles of each channel."""
+    orders: dict[str, list[Order]] = field(default_factory=dict)
+
+    def orders_of(self, unit: str) -> Sequence[Order]:
+        return self.orders.get(unit, ())
+
+
+def read_inputs(recording: OpenRecording) -> MotionInputs:
+    """All of a recording. Raises CncError 26017, 26262, 26263, 26264, and those of its machine file."""
+    units = {
+        kind: [name for name, topic in recording.topics.items() if topic.type_name == kind]
+        for kind in (AXIS_STATE, SPINDLE_STATE, CHANNEL_STATE)
+    }
+    if not recording.metadata and not any(units.values()):
+        raise CncError(FOREIGN, f"recording {recording.path}: is not of cnc_ptp", UNCHECKED)
+    if not units[AXIS_STATE] and not units[SPINDLE_STATE]:
+        reason = f"recording {recording.path}: holds no setpoints of an axis or a spindle"
+        raise CncError(NO_SETPOINTS, reason, UNCHECKED)
+    inputs = MotionInputs(_machine(recording), _cycle_time(recording))
+    for topic in units[AXIS_STATE]:
+        inputs.axes[_unit(topic)] = _columns(recording, topic, AXIS_FIELDS)
+    for topic in units[SPINDLE_STATE]:
+        inputs.spindles[_unit(topic)] = _columns(recording, topic, SPINDLE_FIELDS)
+    for topic in units[CHANNEL_STATE]:
+        inputs.channels[_unit(topic)] = np.sort(recording.columns(topic, "cycle")["cycle"].astype(np.int64))
+    _require_parameters(recording, inputs)
+    inputs.orders = orders_by_unit(_commands(recording))
+    return inputs
+
+
+def orders_by_unit(commands: Iterable[tuple[int, str, str, str, bool]]) -> dict[str, list[Order]]:
+    """Accepted ones of (cycle, target, command, arguments as JSON, accepted), in the order of their cycles."""
+    orders: dict[str, list[Order]] = {}
+    for cycle, target, command, arguments, accepted in commands:
+        if accepted:
+            orders.setdefault(target, []).append(Order(int(cycle), command, json.loads(arguments or "{}")))
+    for of_unit in orders.values():
+        of_unit.sort(key=lambda order: order.cycle)
+    return orders
+
+
+def in_order(columns: Columns) -> Columns:
+    """Sorted by their cycles, each cycle once."""
+    cycles = columns["cycle"].astype(np.int64)
+    if (np.diff(cycles) > 0).all():
+        return {**columns, "cycle": cycles}
+    _, first = np.unique(cycles, return_index=True)
+    return {name: column[first] for name, column in columns.items()} | {"cycle": cycles[first]}
+
+
+def _columns(recording: OpenRecording, topic: str, fields: Sequence[str]) -> Columns:
+    lacking = [name for name in fields if name not in recording.topics[topic].fields]
+    if lacking:
+        reason = f"recording {recording.path}: {topic} was recorded without {', '.join(lacking)}"
+        raise CncError(LACKS_FIELDS, reason, UNCHECKED)
+    columns = recording.columns(topic, *fields)
+    return in_order({name: columns[name] for name in fields})
+
+
+def _commands(recording: OpenRecording) -> list[tuple[int, str, str, str, bool]]:
+    if "/commands" not in recording.topics:
+        return []
+    columns = recording.columns("/commands", *COMMAND_FIELDS)
+    return list(zip(*(columns[name] for name in COMMAND_FIELDS), strict=True))
+
+
+def _machine(recording: OpenRecording) -> MachineParameters:
+    try:
+        text = recording.attached(MACHINE_FILE)
+    except CncError:
+        text = ""
+    if not text:
+        reason = f"recording {recording.path}: holds no attachment {MACHINE_FILE}, which has the limits"
+        raise CncError(NO_PARAMETERS, reason, UNCHECKED)
+    return load_machine(text, f"{recording.path}:{MACHINE_FILE}")
+
+
+def _require_parameters(recording: OpenRecording, inputs: MotionInputs) -> None:
+    for kind, units, known in (
+        ("axis", inputs.axes, inputs.machine.axes),
+        ("spindle", inputs.spindles, inputs.machine.spindles),
+    ):
+        for unit in units:
+            if unit not in known:
+                reason = f"recording {recording.path}: its {MACHINE_FILE} has no {kind} '{unit}'"
+                raise CncError(NO_PARAMETERS, reason, UNCHECKED)
+
+
+def _cycle_time(recording: OpenRecording) -> float:
+    return int(recording.metadata.get("cycle_time_ns", CYCLE_TIME_NS)) * 1e-9
+
+
+def _unit(topic: str) -> str:
+    return topic.strip("/").removesuffix("/state")

@@ -1,0 +1,72 @@
+"""Random commands in random states: a state machine of Hypothesis, and the seeds that have found defects."""
+
+from __future__ import annotations
+
+import os
+
+import pytest
+from hypothesis import HealthCheck, settings
+from hypothesis import strategies as st
+from hypothesis.stateful import RuleBasedStateMachine, initialize, rule
+
+from bench.random_commands import MACHINES, CommandedMachine, lives, main
+
+EXAMPLES = int(os.environ.get("RANDOM_COMMANDS", "6"))
+STEPS = 40
+
+
+class RandomCommands(RuleBasedStateMachine):
+    """Commands by seed, so that Hypothesis can shorten their sequence."""
+
+    machine: CommandedMachine
+
+    @initialize(file=st.sampled_from(MACHINES), seed=st.integers(0, 2**32 - 1))
+    def begin(self, file: str, seed: int) -> None:
+        self.machine = CommandedMachine(seed, file)
+
+    @rule(seed=st.integers(0, 2**32 - 1))
+    def command(self, seed: int) -> None:
+        self.machine.random.seed(seed)
+        self.machine.random_command()
+        assert self.machine.violations == []
+
+    @rule(blocks=st.sampled_from((1, 2, 5, 20, 60)))
+    def time(self, blocks: int) -> None:
+        self.machine.tick(blocks)
+        assert self.machine.violations == []
+
+    def teardown(self) -> None:
+        if hasattr(self, "machine"):
+            assert self.machine.finish() == []
+
+
+TestRandomCommands = RandomCommands.TestCase
+TestRandomCommands.settings = settings(
+    max_examples=EXAMPLES,
+    stateful_step_count=STEPS,
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_life_has_no_violation(seed: int) -> None:
+    (machine,) = lives(120, seed)
+    assert machine.violations == []
+    assert machine.counts["commands"] > 50
+    assert machine.counts["refused"] > 10
+
+
+def test_the_same_seed_makes_the_same_machine() -> None:
+    first, second = (next(lives(60, 3)) for _ in range(2))
+    assert [record.arguments_json for record in first.records] == [record.arguments_json for record in second.records]
+    assert repr(first.blocks) == repr(second.blocks)
+
+
+def test_a_violation_is_printed_with_its_seed(capsys: pytest.CaptureFixture[str]) -> None:
+    machine = CommandedMachine(5)
+    machine.require(False, "something")
+    assert machine.violations == ["seed 5 cycle 0: something"]
+    assert main(["30", "4"]) == 0
+    assert capsys.readouterr().out.startswith("30 steps from seed 4 in ")

@@ -1,0 +1,298 @@
+"""The motion checker: closed forms of its bounds, each kind of violation at its cycle, exact texts for bad input."""
+
+from __future__ import annotations
+
+import itertools
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from machine_support import ROOT
+from recording_support import Blocks
+
+from cnc_ptp.cli import main
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.wiring import build_units, unit_kinds
+from cnc_ptp.parameters import machine_text, read_machine
+from cnc_ptp.plc.scenario import parse_scenario
+from cnc_ptp.recording.mcap_file import McapFile
+from cnc_ptp.recording.motion_check.check import check_motion, check_recording
+from cnc_ptp.recording.motion_check.continuity import PEANO
+from cnc_ptp.recording.motion_check.findings import MotionResult
+from cnc_ptp.recording.motion_check.inputs import MotionInputs, read_inputs
+from cnc_ptp.recording.offline_run import OfflineRun
+from cnc_ptp.recording.opened import OpenRecording
+from cnc_ptp.recording.writer import Recording
+
+MILL = ROOT / "config" / "mill.yaml"
+SCENARIO = """
+- {at: 0.0, to: x, do: move_absolute, target: 20, velocity: 100}
+- {at: 0.0, to: z, do: couple, master: y, factor: -0.5}
+- {at: 0.05, to: y, do: move_absolute, target: 10, velocity: 100}
+- {at: 0.0, to: s, do: start, direction: cw, speed_rpm: 600}
+- {at: 0.6, to: s, do: stop}
+- {at: 0.7, to: x, do: power, enabled: false}
+- {at: 1.0, to: x, do: power, enabled: true}
+"""
+
+
+def make_run(
+    path: Path, scenario: str = SCENARIO, machine: Path = MILL, change: Callable[..., None] | None = None
+) -> Path:
+    """Records a run; `change(name, block)` bends blocks before they are written."""
+    parameters = read_machine(str(machine))
+    entries = parse_scenario(scenario, "test.yaml", unit_kinds(parameters))
+    units = build_units(parameters, scenario=entries)
+    text = machine_text(str(machine))
+    with OfflineRun(parameters, units, record=str(path), machine_text=text, checkpoint_seconds=0.0) as run:
+        if change is None:
+            for _ in run.run():
+                pass
+        else:
+            recording: Any = run._recording
+            write = recording.block
+
+            def bent(name: str, block: Any) -> None:
+                change(name, block)
+                write(name, block)
+
+            recording.block = bent
+            for _ in run.run():
+                pass
+    return path
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return make_run(tmp_path_factory.mktemp("motion") / "run.mcap")
+
+
+@pytest.fixture
+def inputs(path: Path) -> MotionInputs:
+    with OpenRecording(path) as recording:
+        return read_inputs(recording)
+
+
+def bent(inputs: MotionInputs, unit: str, column: str, cycle: int, by: float) -> MotionResult:
+    """The run with one value changed."""
+    columns = {**(inputs.axes | inputs.spindles)[unit]}
+    columns[column] = columns[column].astype(float).copy()
+    columns[column][int(np.searchsorted(columns["cycle"], cycle))] += by
+    (inputs.axes if unit in inputs.axes else inputs.spindles)[unit] = columns
+    return check_motion(inputs)
+
+
+def found(result: MotionResult) -> set[tuple[str, str, int, int]]:
+    return {(each.unit, each.what, each.cycle, each.cycles) for each in result.violations}
+
+
+def test_a_good_run_has_no_violation(path: Path) -> None:
+    result = check_recording(path)
+    assert result.violations == []
+    assert sorted(result.units) == ["s", "x", "y", "z"]
+    assert result.text() == f"{path}: motion of {result.cycles} cycles of 4 units: no violation"
+
+
+BENT = [
+    ("x", "set_position", 100, 1e-5, ("step of position", 100, 2)),
+    ("x", "set_velocity", 100, 0.05, ("step of velocity", 100, 2)),
+    ("x", "set_acceleration", 100, 120.0, ("step of acceleration", 100, 2)),
+    ("x", "set_velocity", 100, 1e5, ("velocity", 100, 1)),
+    ("x", "set_acceleration", 100, 1e6, ("acceleration", 100, 1)),
+    ("x", "set_position", 800, 1e-9, ("set position changes without power", 800, 2)),
+    ("x", "set_velocity", 800, 1e-9, ("set velocity without power", 800, 1)),
+    ("x", "set_acceleration", 800, 1e-9, ("set acceleration without power", 800, 1)),
+    ("x", "set_velocity", 1010, 1e-9, ("set velocity at a standstill", 1010, 1)),
+    ("z", "set_velocity", 120, 1e-6, ("velocity beside that of the master", 120, 1)),
+    ("z", "set_acceleration", 120, 1e-6, ("acceleration beside that of the master", 120, 1)),
+    ("z", "set_position", 120, 1e-6, ("distance beside that of the master", 120, 2)),
+    ("s", "set_speed_rpm", 300, 12000.0, ("velocity", 300, 1)),
+    ("s", "set_position_deg", 300, 0.5, ("step of position", 300, 2)),
+    ("s", "set_speed_rpm", 300, 50.0, ("step of velocity", 300, 2)),
+    ("s", "set_acceleration_deg_s2", 300, 1e6, ("acceleration", 300, 1)),
+]
+
+
+@pytest.mark.parametrize(("unit", "column", "cycle", "by", "wanted"), BENT, ids=lambda value: str(value))
+def test_one_bent_value_is_told_at_its_cycle(
+    inputs: MotionInputs, unit: str, column: str, cycle: int, by: float, wanted: tuple[str, int, int]
+) -> None:
+    result = bent(inputs, unit, column, cycle, by)
+    assert (unit, *wanted) in found(result)
+    assert {each[0] for each in found(result)} == {unit}
+    assert {each[2] for each in found(result)} <= {cycle, cycle + 1}
+
+
+@pytest.mark.parametrize("column", ["set_position", "set_velocity", "set_acceleration"])
+def test_no_number(inputs: MotionInputs, column: str) -> None:
+    result = bent(inputs, "x", column, 100, float("nan"))
+    assert ("x", f"{column.removeprefix('set_')} is no number", 100, 1) in found(result)
+
+
+def test_beyond_a_soft_limit(inputs: MotionInputs) -> None:
+    columns = {**inputs.axes["x"]}
+    limit = inputs.machine.axes["x"].soft_limit_positive
+    columns["set_position"] = columns["set_position"] + (limit - 5.0)
+    inputs.axes["x"] = columns
+    found_there = [each for each in check_motion(inputs).violations if "soft limit" in each.what]
+    (violation,) = found_there
+    first = int(columns["cycle"][np.flatnonzero(columns["set_position"] > limit)[0]])
+    assert (violation.what, violation.cycle, violation.limit) == ("beyond the positive soft limit", first, limit)
+
+
+def test_a_spindle_that_nobody_turns(inputs: MotionInputs) -> None:
+    inputs.orders["s"] = [order for order in inputs.orders["s"] if order.command != "start"]
+    (violation,) = check_motion(inputs).violations
+    assert (violation.unit, violation.what, violation.cycle) == ("s", "speeds up without an owner", 1)
+
+
+def test_an_axis_that_starts_behind_a_stop(inputs: MotionInputs) -> None:
+    (move,) = (order for order in inputs.orders["y"] if order.command == "move_absolute")
+    inputs.orders["y"].remove(move)
+    inputs.orders["y"].append(type(move)(0, "stop", {}))
+    (violation,) = check_motion(inputs).violations
+    assert (violation.unit, violation.what) == ("y", "moves although it was stopped")
+
+
+def test_soft_limits_move_with_set_position(tmp_path: Path) -> None:
+    """Seed 33 of `bench.random_commands`: at cycle 0 there is no cycle before from which the shift could be read."""
+    scenario = """
+- {at: 0.0, to: x, do: set_position, position: 150, relative: true}
+- {at: 0.1, to: x, do: move_relative, distance: 5}
+"""
+    path = make_run(tmp_path / "run.mcap", scenario, machine=ROOT / "config" / "ptp.yaml")
+    assert check_recording(path).violations == []
+
+
+def test_an_abrupt_stop_is_told(tmp_path: Path) -> None:
+    """Its deceleration is above A- of the axis (2400 mm/s²), within P-AXIS-00008: told, and no violation."""
+    scenario = """
+- {at: 0.0, to: x, do: move_absolute, target: 100, velocity: 200, acceleration: 500, deceleration: 500}
+- {at: 0.3, to: x, do: emergency_stop, deceleration: 2800, jerk: 90000}
+"""
+    result = check_recording(make_run(tmp_path / "run.mcap", scenario))
+    assert result.violations == []
+    (told,) = result.told
+    assert (told.unit, told.what) == ("x", "deceleration of an abrupt stop")
+    assert (told.value, told.limit) == (-2800.0, 2400.0)
+
+
+# closed forms
+
+
+def test_no_jerk_within_the_limit_exceeds_the_bounds() -> None:
+    """All sequences of ±J, 0 over eighths of a cycle, integrated in parts: the bounds hold, and are reached."""
+    worst_v = worst_x = 0.0
+    for jerks in itertools.product((-1.0, 1.0), repeat=8):
+        x = v = a = 0.0
+        for jerk in jerks:
+            d = 0.125
+            x, v, a = x + d * (v + d * (a / 2 + d * jerk / 6)), v + d * (a + d * jerk / 2), a + d * jerk
+        off_v, off_x = abs(v - 0.5 * a), abs(x - 0.5 * v + a / 12)
+        assert off_v <= 0.25 * (1.0 - a * a) + 1e-15
+        assert off_x <= PEANO + 1e-15
+        worst_v, worst_x = max(worst_v, off_v), max(worst_x, off_x)
+    assert worst_v == 0.25
+    assert worst_x > 0.95 * PEANO
+
+
+def test_the_largest_position_step_is_reached() -> None:
+    """With jerk changes where the kernel (s² - 1/12)/2 changes its sign: s = ±1/√12 from the middle of the cycle."""
+    inner = 1.0 / 12.0**0.5
+    x = v = a = 0.0
+    for d, jerk in ((0.5 - inner, 1.0), (2.0 * inner, -1.0), (0.5 - inner, 1.0)):
+        x, v, a = x + d * (v + d * (a / 2 + d * jerk / 6)), v + d * (a + d * jerk / 2), a + d * jerk
+    assert abs(x - 0.5 * v + a / 12) == pytest.approx(PEANO, rel=1e-12)
+
+
+# command and bad input
+
+
+def told(*words: str) -> tuple[int, str]:
+    result = CliRunner().invoke(main, ["verify", *words])
+    return result.exit_code, result.output if result.exception is None else f"{result.output}{result.exception}"
+
+
+def test_command_of_a_good_run(path: Path) -> None:
+    status, text = told("--motion", str(path))
+    assert (status, text.splitlines()[0]) == (0, check_recording(path).text())
+
+
+def test_command_as_json(path: Path) -> None:
+    status, text = told("--motion", "--json", str(path))
+    assert status == 0
+    assert json.loads(text) == check_recording(path).as_json()
+
+
+def test_json_needs_motion(path: Path) -> None:
+    status, text = told("--json", str(path))
+    assert status == 2
+    assert "--json is an option of --motion; nothing was verified" in text
+
+
+@pytest.mark.motion_unchecked("one value is bent")
+def test_command_of_a_bent_recording(tmp_path: Path) -> None:
+    def bend(name: str, block: Any) -> None:
+        if name == "x" and block.first_cycle == 100:
+            block.set_position[3] += 1e-3
+
+    path = make_run(tmp_path / "run.mcap", change=bend)
+    status, text = told("--motion", str(path))
+    assert status == 1
+    assert text.splitlines()[0] == f"{path}: 1 violations in {check_recording(path).cycles} cycles of 4 units"
+    assert "step of position" in text
+
+
+def record_as(path: Path, unit: str, block: Any, machine: str) -> None:
+    with Recording(path, machine) as recording:
+        recording.block(unit, block)
+
+
+def refused(path: Path) -> str:
+    with pytest.raises(CncError) as error:
+        check_recording(path)
+    return str(error.value)
+
+
+def test_fields_that_were_not_recorded(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("cnc_ptp.recording.motion_check.inputs.AXIS_FIELDS", ("cycle", "set_snap"))
+    assert (
+        refused(path) == f"P-ERR-26264 recording {path}: /x/state was recorded without set_snap; no motion was checked"
+    )
+
+
+def test_a_missing_file(tmp_path: Path) -> None:
+    path = tmp_path / "none.mcap"
+    reason = "cannot be opened: No such file or directory; nothing was read, check the path"
+    assert refused(path) == f"P-ERR-26001 recording {path}: {reason}"
+
+
+def test_a_foreign_file(tmp_path: Path) -> None:
+    path = tmp_path / "foreign.mcap"
+    McapFile(path).close()
+    assert refused(path) == f"P-ERR-26017 recording {path}: is not of cnc_ptp; no motion was checked"
+
+
+def test_no_setpoints(tmp_path: Path) -> None:
+    path = tmp_path / "channel.mcap"
+    record_as(path, "channel", Blocks(1).channel(0), machine_text(str(MILL)))
+    reason = "holds no setpoints of an axis or a spindle; no motion was checked"
+    assert refused(path) == f"P-ERR-26262 recording {path}: {reason}"
+
+
+def test_no_machine_file(tmp_path: Path) -> None:
+    path = tmp_path / "none.mcap"
+    record_as(path, "x", Blocks(1).axis(0), "")
+    reason = "holds no attachment machine.yaml, which has the limits; no motion was checked"
+    assert refused(path) == f"P-ERR-26263 recording {path}: {reason}"
+
+
+def test_an_axis_without_parameters(tmp_path: Path) -> None:
+    path = tmp_path / "other.mcap"
+    record_as(path, "other", Blocks(1).axis(0), machine_text(str(MILL)))
+    reason = "its machine.yaml has no axis 'other'; no motion was checked"
+    assert refused(path) == f"P-ERR-26263 recording {path}: {reason}"
