@@ -15,11 +15,10 @@ from typing import NamedTuple
 from cnc_ptp import msg
 from cnc_ptp.control.drives.setpoint_watchdog import (
     OwnStop,
-    axis_deceleration,
     axis_stop,
-    gear_deceleration,
-    gear_stop,
+    braking_deceleration,
     own_stop,
+    spindle_stop,
     stands,
 )
 from cnc_ptp.errors import Value
@@ -65,7 +64,9 @@ class DriveWatch:
         self._node = node
         self._machine = machine
         axes = [name for name, axis in machine.axes.items() if not axis.virtual]
-        self._units: dict[str, type] = dict.fromkeys(axes, AxisBlock) | dict.fromkeys(machine.spindles, SpindleBlock)
+        self._classes: dict[str, type] = dict.fromkeys(axes, AxisBlock) | dict.fromkeys(machine.spindles, SpindleBlock)
+        self._units = [*self._classes]
+        """Those whose drives have not stopped on their own."""
         self._newest: dict[str, bytes] = {}
         self._seconds = machine.watchdog_ms / 1000.0
         self._watchdog = Watchdog(self._units, seconds=self._seconds)
@@ -74,7 +75,7 @@ class DriveWatch:
         self._publisher = node.create_publisher(msg.DriveStop, DRIVE_STOPS, EVENTS)
         self._events = EventPublisher(node)
         node.input_period = float("inf")  # this class says when
-        for unit, block_class in self._units.items():
+        for unit, block_class in self._classes.items():
             kind = next(kind for kind, each in BLOCK_CLASSES.items() if each is block_class)
             node.poll_input(BLOCK_TYPES[kind], block_topic(unit), partial(self._take, unit), NEWEST_BLOCK)
 
@@ -118,7 +119,7 @@ class DriveWatch:
 
     def _stop(self, unit: str, stamps: Stamps) -> None:
         last = self._last_values(unit)
-        del self._units[unit]
+        self._units.remove(unit)
         if last is None:  # no block has ever come: the drive has not been moved
             return
         moves = not stands(last.velocity, last.deceleration, self._cycle_time)
@@ -148,26 +149,36 @@ class DriveWatch:
         self._events.publish(convert.event_to_message(event, convert.time_message(stamps.at(cycle))))
 
     def _last_values(self, unit: str) -> LastValues | None:
-        data = self._newest.get(unit)
-        if data is None:
+        if unit not in self._newest:
             return None
-        block = codec_of(self._units[unit]).decode(data)
+        block = self._decoded(unit)
         return self._of_axis(unit, block) if isinstance(block, AxisBlock) else self._of_spindle(unit, block)
 
     def _of_axis(self, unit: str, block: AxisBlock) -> LastValues:
         axis, velocities = self._machine.axes[unit], block.actual_velocity
         position, velocity = block.actual_position[-1], velocities[-1]
         acceleration = (velocity - velocities[-2]) / self._cycle_time if block.count > 1 else block.set_acceleration[-1]
-        profile = axis_stop(axis, position, velocity, acceleration)
+        braking = braking_deceleration(axis, in_step=self._is_coupled(unit))
+        profile = axis_stop(axis, position, velocity, acceleration, braking)
         cycle = block.first_cycle + block.count - 1
-        return LastValues(cycle, position, velocity, profile, axis_deceleration(axis), block.set_velocity[-1] != 0.0)
+        return LastValues(cycle, position, velocity, profile, braking, block.set_velocity[-1] != 0.0)
 
     def _of_spindle(self, unit: str, block: SpindleBlock) -> LastValues:
         gear = self._machine.spindles[unit].gears[block.gear[-1]]
         position, velocity = block.actual_position_deg[-1], block.actual_speed_rpm[-1] * DEG_S_PER_RPM
-        profile = gear_stop(gear, position, velocity)
+        braking = braking_deceleration(gear, in_step=self._is_coupled(unit))
+        profile = spindle_stop(position, velocity, braking)
         cycle = block.first_cycle + block.count - 1
-        return LastValues(cycle, position, velocity, profile, gear_deceleration(gear), block.set_speed_rpm[-1] != 0.0)
+        return LastValues(cycle, position, velocity, profile, braking, block.set_speed_rpm[-1] != 0.0)
+
+    def _is_coupled(self, unit: str) -> bool:
+        """It has a master or slaves; they stop on their own ramps, and so does its drive: they stay together."""
+        masters = {name: self._decoded(name).master for name in self._newest}
+        return bool(masters.get(unit)) or unit in masters.values()
+
+    def _decoded(self, unit: str) -> AxisBlock | SpindleBlock:
+        block: AxisBlock | SpindleBlock = codec_of(self._classes[unit]).decode(self._newest[unit])
+        return block
 
     def _kind(self, unit: str) -> str:
         return "axis" if unit in self._machine.axes else "spindle"

@@ -1,7 +1,7 @@
 """What a drive does when its setpoints cease: it brakes on its own, from where it is, until it stands.
 
-Real drives watch their telegrams (SERCOS: C1D diagnosis after missing MDTs; EtherCAT: watchdog of the sync manager) and
-then stop without a master. No command can come any more, so that a whole stop is one profile from the last actual
+Real drives watch their telegrams (SERCOS: missing MDTs of class 1 diagnostics; EtherCAT: watchdog of the sync manager)
+and then stop without a master. No command can come any more, so that a whole stop is one profile from the last actual
 values. Units: mm, s or deg, s.
 """
 
@@ -21,39 +21,37 @@ ROUNDING = 1e-9
 
 
 class OwnStop(NamedTuple):
-    """Actual values of the cycles after the last setpoint, mm and mm/s (deg, deg/s); the last one is at a standstill."""
+    """Actual values of the cycles after the last setpoint, mm and mm/s (deg, deg/s); in the last one it stands."""
 
     positions: list[float]
     velocities: list[float]
 
 
-def axis_deceleration(axis: AxisParameters) -> float:
-    """The deceleration of the emergency ramp, mm/s² (deg/s²): P-AXIS-00003, never weaker than P-AXIS-00002."""
-    return max(axis.deceleration, axis.emergency_deceleration)
+def braking_deceleration(drive: AxisParameters | GearParameters, *, in_step: bool) -> float:
+    """That of the emergency ramp, mm/s² (deg/s²): P-AXIS-00003, never weaker than P-AXIS-00002.
 
-
-def gear_deceleration(gear: GearParameters) -> float:
-    """The same of a gear of a spindle, deg/s²."""
-    return max(gear.deceleration, gear.emergency_deceleration)
-
-
-def axis_stop(axis: AxisParameters, position: float, velocity: float, acceleration: float) -> Profile:
-    """The jerk-limited emergency ramp of an axis from its actual values.
-
-    The acceleration counts as far as the axis can have it (P-AXIS-00008 and its emergency ramp).
+    `in_step`: that of the own ramp alone (P-AXIS-00002), on which the others of a coupled group stop.
     """
-    braking = axis_deceleration(axis)
-    most = max(axis.max_acceleration, braking)
-    limits = Limits(axis.max_velocity, axis.acceleration, braking, axis.jerk)
+    return drive.deceleration if in_step else max(drive.deceleration, drive.emergency_deceleration)
+
+
+def axis_stop(
+    axis: AxisParameters, position: float, velocity: float, acceleration: float, deceleration: float
+) -> Profile:
+    """The jerk-limited ramp of an axis from its actual values.
+
+    The acceleration counts as far as the axis can have it (P-AXIS-00008, or the ramp itself).
+    """
+    most = max(axis.max_acceleration, deceleration)
+    limits = Limits(axis.max_velocity, axis.acceleration, deceleration, axis.jerk)
     return plan_to_velocity(position, velocity, min(most, max(-most, acceleration)), 0.0, limits)
 
 
-def gear_stop(gear: GearParameters, position: float, velocity: float) -> Profile:
-    """The emergency ramp of a spindle in this gear: a constant deceleration, v²/2a to the standstill."""
-    braking = gear_deceleration(gear)
-    duration = abs(velocity) / braking
+def spindle_stop(position: float, velocity: float, deceleration: float) -> Profile:
+    """The ramp of a spindle: a constant deceleration, v²/2a to the standstill."""
+    duration = abs(velocity) / deceleration
     end = position + 0.5 * velocity * duration
-    return Profile([(0.0, position, velocity, -copysign(braking, velocity), 0.0), (duration, end, 0.0, 0.0, 0.0)])
+    return Profile([(0.0, position, velocity, -copysign(deceleration, velocity), 0.0), (duration, end, 0.0, 0.0, 0.0)])
 
 
 def stands(velocity: float, deceleration: float, cycle_time: float) -> bool:
