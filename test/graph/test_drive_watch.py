@@ -231,6 +231,22 @@ def test_a_process_that_was_held_up_ends_when_its_drive_has_braked(moving):
     assert wait_until_gone(nodes.values()) == []
 
 
+def test_a_process_that_is_held_up_for_a_moment_catches_up(moving):
+    """Less than half of the watchdog time: nobody is lost, no cycle is missing, the drive has followed all setpoints."""
+    graph, nodes, recording = moving
+    for _ in range(3):
+        os.kill(nodes["x"], signal.SIGSTOP)
+        time.sleep(0.05)
+        os.kill(nodes["x"], signal.SIGCONT)
+        time.sleep(0.3)
+    graph.process.send_signal(signal.SIGINT)
+    output = graph.finish(expect=1)
+    assert "P-ERR-26106" in output and "P-ERR-26101" not in output and "P-ERR-26265" not in output
+    recorded = verified(recording, whole=False)
+    assert recorded.drive_stops == []
+    assert np.all(np.diff(recorded.states["/x/state"]["cycle"].astype(int)) == 1)
+
+
 def test_the_drives_brake_when_the_supervisor_is_killed(moving):
     """All nodes end at once then; clock and recorder stay until the drives stand."""
     graph, nodes, recording = moving
