@@ -101,8 +101,8 @@ def processes_of(supervisor: psutil.Process) -> dict[str, psutil.Process]:
         if node:
             name = node if node in OBSERVERS else words[words.index(f"cnc_ptp.nodes.{node}") + 2]
             found["plc" if name == "plc_bridge" else name] = child
-        elif "forkserver" in " ".join(words):
-            found[SERVER] = child
+        else:
+            found[SERVER if "forkserver" in " ".join(words) else f"process {child.pid}"] = child
     return found
 
 

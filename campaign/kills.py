@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import random
+import re
 import signal
 import time
 from collections.abc import Iterator
@@ -12,6 +13,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import psutil
 
 from campaign import motion
@@ -31,6 +33,8 @@ SHORTEST, LONGEST = 0.05, 10.0
 """Seconds for which a process is held up."""
 FLUSHED = 600
 """Cycles that a recorder that dies may not have written yet."""
+RETRACTED = 0.01
+"""mm; the retract begins within a block of its event."""
 HELD_SHARE, TERM_SHARE = 0.3, 0.2
 
 
@@ -180,6 +184,20 @@ def check_recording(row: Row, case: Case, recording: Path, written: int) -> None
     row.problems += motion.problems(recorded, machine, ended=not of_recorder)
     row.own_stops = {stop.unit: len(stop.actual_position) for stop in recorded.drive_stops}
     check_links(row, case, recorded)
+    row.problems += not_retracted(recorded)
+
+
+def not_retracted(recorded: Recorded) -> Iterator[str]:
+    """Threads that are broken off with a retract whose axis has not gone that way, though its process lives."""
+    for event in recorded.events:
+        told = re.search(r"axis (\w+) retracts by ([0-9.]+) mm while the path follows", event.text)
+        rows = recorded.states.get(f"/{told[1].lower()}/state") if told else None
+        if told is None or rows is None or any(stop.unit == told[1].lower() for stop in recorded.drive_stops):
+            continue
+        positions = rows["set_position"]
+        way = abs(positions[-1] - positions[np.searchsorted(rows["cycle"], event.cycle)])
+        if abs(way - float(told[2])) > RETRACTED:
+            yield f"{told[1]} has retracted by {way:.3f} mm instead of {told[2]} mm"
 
 
 def check_links(row: Row, case: Case, recorded: Recorded) -> None:
