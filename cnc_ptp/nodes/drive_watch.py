@@ -57,7 +57,7 @@ class DriveWatch:
 
     Nobody is woken by these blocks, and none is decoded while its unit lives. In machine time a stop begins with the
     cycle after the last setpoint, as everything else that depends on the unit: units wait for its blocks, so that all
-    of them come to that cycle when the watchdog time is over.
+    of them come to that cycle when the watchdog time has passed.
     """
 
     def __init__(self, node: PollingNode, machine: MachineParameters) -> None:
@@ -103,7 +103,7 @@ class DriveWatch:
     def settled(self, stamps: Stamps) -> bool:
         """At the end of a run: True when no drive got a setpoint of a motion last; those of silent units brake before.
 
-        Nobody says any more that it lives, so that a drive that stands is left alone.
+        Then nobody says that it lives, so that a drive that stands is left alone.
         """
         self._node.take_inputs()
         last = {unit: self._last_values(unit) for unit in self._units}
@@ -127,7 +127,7 @@ class DriveWatch:
         self._publish(unit, last.cycle + 1, stop, stamps)
         place, length = stop.positions[-1], self._length_unit(unit)
         watched = f"no setpoint came after cycle {last.cycle} within its watchdog time of {self._seconds:g} s"
-        silence = f"drive of {self._kind(unit)} {unit}: {watched}"
+        silence = f"drive of {self._name(unit)}: {watched}"
         if moves:
             ramp = f"{last.velocity:.4f} {length}/s with {last.deceleration:g} {length}/s²"
             text = f"{silence}; it has braked on its own from {ramp} to a standstill at {place:.4f} {length}"
@@ -180,8 +180,8 @@ class DriveWatch:
         block: AxisBlock | SpindleBlock = codec_of(self._classes[unit]).decode(self._newest[unit])
         return block
 
-    def _kind(self, unit: str) -> str:
-        return "axis" if unit in self._machine.axes else "spindle"
+    def _name(self, unit: str) -> str:
+        return f"axis {unit}" if unit in self._machine.axes else f"spindle {unit}"
 
     def _length_unit(self, unit: str) -> str:
         return "mm" if unit in self._machine.axes and not self._machine.axes[unit].rotary else "deg"

@@ -173,7 +173,7 @@ class RecorderNode(PollingNode):
 
     @property
     def settled(self) -> bool:
-        """Nothing has arrived for a while, and the clock has ended: it may have to tell of drives that brake."""
+        """Nothing has arrived for a while, and the clock has ended: it may have to say that drives have braked."""
         clock_ended = not any(each.get_publisher_count() for each in self._needed[:1])
         return clock_ended and time.monotonic() - self._heard > QUIET
 

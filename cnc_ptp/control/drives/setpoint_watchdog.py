@@ -1,7 +1,7 @@
 """What a drive does when its setpoints cease: it brakes on its own, from where it is, until it stands.
 
 Real drives watch their telegrams (SERCOS: missing MDTs of class 1 diagnostics; EtherCAT: watchdog of the sync manager)
-and then stop without a master. No command can come any more, so that a whole stop is one profile from the last actual
+and then stop without a master. No other command will come, so that a whole stop is one profile from the last actual
 values. Units: mm, s or deg, s.
 """
 
