@@ -10,6 +10,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, field
+from math import ceil
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,7 @@ import numpy as np
 import psutil
 
 from campaign import motion
-from campaign.cases import CASES, Case
+from campaign.cases import CASES, MILLING, Case
 from campaign.graph import Graph, free_domain
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import Severity
@@ -28,6 +29,8 @@ SECONDS = 8.0
 """Of a run that something is done to."""
 FROZEN = 3.0
 """Seconds for which a whole graph stands still."""
+ROUND = 3.0
+"""Seconds that a round of the program takes at least."""
 SUBSCRIBERS, FOREIGN_NODES = 200, 50
 SETTLED = 0.2
 """Part of a soak after which memory must not grow any more."""
@@ -196,8 +199,8 @@ def soak(minutes: float, folder: Path, domain: int) -> LoadRow:
     place.mkdir(parents=True, exist_ok=True)
     case = case_of("program")
     program = place / "soak.nc"
-    body = "".join(line + "\n" for line in str(case.program).splitlines()[2:-2])
-    program.write_text(f"%soak\nN10 G90 G17 M03 S3000\n$WHILE 1 == 1\n{body}$ENDWHILE\nM30\n")
+    rounds = ceil(60.0 * minutes / ROUND) + 1
+    program.write_text(f"%soak\nN10 G90 G17 M03 S3000\n{MILLING * rounds}M30\n")
     graph = Graph([str(case.machine), "--program", str(program)], place / "run.mcap", domain=domain)
     samples: list[dict[str, tuple[float, int, int]]] = []
     try:

@@ -35,5 +35,5 @@ def summary(rows: Sequence[Row]) -> str:
     bad = [problem for row in rows for problem in row.problems]
     return (
         f"{len(happened)} faults ({over} came after the end of their run): {len(happened) - survived} stops, "
-        f"{survived} runs that went on, {len(bad)} problems"
+        f"{survived} runs that continued, {len(bad)} problems"
     )
