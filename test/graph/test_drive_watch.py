@@ -11,6 +11,7 @@ from graph_support import MILL, PTP, Running, kill, one_axis_machine, verified, 
 
 from cnc_ptp import msg
 from cnc_ptp.nodes import process
+from cnc_ptp.nodes.axis import AxisNode
 from cnc_ptp.nodes.clock import ClockNode
 from cnc_ptp.nodes.drive_watch import DriveWatch
 from cnc_ptp.nodes.handover import Handover
@@ -174,6 +175,32 @@ def test_at_the_end_only_what_moves_is_waited_for(bus):
     bus.axis("y", 0, 0.0, 10.0)
     bus.spin_until(lambda: bus.watch.settled(STAMPS) and bus.events)
     assert [stop.unit for stop in bus.stops] == ["y"]
+
+
+def test_an_axis_whose_drive_has_stopped_computes_nothing_and_ends():
+    process.initialise()
+    outside = rclpy.create_node("outside", enable_rosout=False, start_parameter_services=False)
+    axis = AxisNode(read_machine(str(PTP)), "x")
+    axis.setup()
+    writer = outside.create_publisher(msg.DriveStop, DRIVE_STOPS, EVENTS)
+    executor = process.EventsExecutor()
+    executor.add_node(axis)
+    try:
+        for unit in ("y", "x"):
+            assert axis.failure is None
+            writer.publish(msg.DriveStop(unit=unit, first_cycle=300))
+            for _ in range(30 if unit == "y" else 1000):
+                if axis.failure is None:
+                    executor.spin_once(timeout_sec=0.01)
+        assert str(axis.failure) == (
+            "P-ERR-26267 axis x: its drive has stopped on its own in cycle 300, as no setpoint came within the watchdog "
+            "time of 0.2 s; the node ends: it does not know where the drive is"
+        )
+    finally:
+        for node in (axis, outside):
+            node.destroy_node()
+        executor.shutdown()
+        rclpy.try_shutdown()
 
 
 @pytest.fixture
