@@ -19,7 +19,6 @@ from cnc_ptp.control.drives.setpoint_watchdog import (
     braking_deceleration,
     own_stop,
     spindle_stop,
-    stands,
 )
 from cnc_ptp.errors import Value
 from cnc_ptp.motion.profile import Profile
@@ -122,13 +121,12 @@ class DriveWatch:
         self._units.remove(unit)
         if last is None:  # no block has ever come: the drive has not been moved
             return
-        moves = not stands(last.velocity, last.deceleration, self._cycle_time)
-        stop = own_stop(last.profile, self._cycle_time) if moves else OwnStop([last.position], [0.0])
+        stop = own_stop(last.profile, self._cycle_time)
         self._publish(unit, last.cycle + 1, stop, stamps)
         place, length = stop.positions[-1], self._length_unit(unit)
         watched = f"no setpoint came after cycle {last.cycle} within its watchdog time of {self._seconds:g} s"
         silence = f"drive of {self._name(unit)}: {watched}"
-        if moves:
+        if len(stop.positions) > 1:
             ramp = f"{last.velocity:.4f} {length}/s with {last.deceleration:g} {length}/s²"
             text = f"{silence}; it has braked on its own from {ramp} to a standstill at {place:.4f} {length}"
             values: dict[str, Value] = {"velocity": last.velocity, "deceleration": last.deceleration, "place": place}

@@ -13,7 +13,6 @@ from cnc_ptp.control.drives.setpoint_watchdog import (
     braking_deceleration,
     own_stop,
     spindle_stop,
-    stands,
 )
 from cnc_ptp.parameters import read_machine
 
@@ -67,7 +66,11 @@ def test_a_spindle_brakes_at_a_constant_deceleration():
 def test_a_drive_that_stands_needs_no_ramp():
     for profile in (axis_stop(X, 7.0, 0.0, 0.0, BRAKING), spindle_stop(7.0, 0.0, BRAKING)):
         assert own_stop(profile, CYCLE) == ([7.0], [0.0])
-    assert stands(0.004, 4.0, CYCLE) and stands(-0.004, 4.0, CYCLE) and not stands(0.0041, 4.0, CYCLE)
+
+
+def test_a_slow_drive_brakes_within_its_jerk():
+    """3 mm/s are below A- · T = 4 mm/s, but the jerk needs 2√(v/J) = 15.5 ms for them."""
+    assert len(own_stop(axis_stop(X, 0.0, 3.0, 0.0, BRAKING), CYCLE).positions) == 16
 
 
 def test_the_last_cycle_is_the_first_one_at_a_standstill():

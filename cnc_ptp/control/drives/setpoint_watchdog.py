@@ -54,13 +54,8 @@ def spindle_stop(position: float, velocity: float, deceleration: float) -> Profi
     return Profile([(0.0, position, velocity, -copysign(deceleration, velocity), 0.0), (duration, end, 0.0, 0.0, 0.0)])
 
 
-def stands(velocity: float, deceleration: float, cycle_time: float) -> bool:
-    """The drive can take this velocity away within a cycle: nothing that one would call a motion."""
-    return abs(velocity) <= deceleration * cycle_time
-
-
 def own_stop(profile: Profile, cycle_time: float) -> OwnStop:
-    """The stop cycle by cycle, from the cycle after the last setpoint on; at least one cycle."""
+    """The stop cycle by cycle, from the cycle after the last setpoint on; one cycle for a drive that stands."""
     count = max(1, ceil(profile.duration / cycle_time - ROUNDING))
     states = [profile.state_at(number * cycle_time) for number in range(1, count)]
     position, velocity, _ = profile.end
