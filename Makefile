@@ -1,5 +1,6 @@
 # make demo   a part is machined by the ROS graph: runs/demo.mcap and runs/demo.html; LOOK=1: pages of it in a browser
 # make test   all tests;  make lint: ruff and mypy;  make bench: figures, never fails on time;  make setup: the set-up alone
+# make campaign   processes of running machines are killed at random moments, 5 minutes; HOURS=8 longer, SEED=7 other ones
 # make figures   every scenario of examples/figures runs and becomes a picture in docs/figures
 # make docs   reference pages and gallery are made again, then the site: build/site/index.html
 # make ids   cnc_ptp/parameters/declare/ids.py is made from declarations.yaml
@@ -12,7 +13,7 @@ INTERFACES := $(wildcard msg/*.msg srv/*.srv action/*.action)
 PACKAGE := setup.py setup.cfg CMakeLists.txt package.xml
 SOURCES := $(shell find cnc_ptp -name '*.py' -not -path '*/msg/*' -not -path '*/srv/*' -not -path '*/action/*')
 
-.PHONY: setup demo test lint bench figures docs ids lock audit sbom clean
+.PHONY: setup demo test lint bench campaign figures docs ids lock audit sbom clean
 setup: $(VENV)/.package $(VENV)/.kernel
 
 $(VENV)/.python:
@@ -59,6 +60,10 @@ lint: setup
 bench: setup
 	$(BIN)/python -m bench
 	$(BIN)/python -m bench.against
+
+campaign: setup
+	@mkdir -p runs
+	$(BIN)/python -m campaign --seed $(or $(SEED),1) $(if $(HOURS),--hours $(HOURS)) --json runs/campaign.jsonl
 
 figures: setup
 	$(BIN)/python -m figures

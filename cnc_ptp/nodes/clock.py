@@ -14,6 +14,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.machine.runner import CLOCK
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import node_command_line, process
+from cnc_ptp.nodes.drive_watch import DriveWatch
 from cnc_ptp.nodes.free_run import FreeRunPace
 from cnc_ptp.nodes.handover import Handover
 from cnc_ptp.nodes.polling_node import PollingNode, chain
@@ -24,6 +25,7 @@ from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.protocol.blocks import PlcBlock
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.wire.block_codec import codec_of
+from cnc_ptp.wire.stamps import Stamps
 from cnc_ptp.wire.ticks import Tick, encode_tick
 
 POLL = 0.02
@@ -43,7 +45,8 @@ class ClockNode(PollingNode):
     """The clock of the graph.
 
     Publishes /clock/tick (CycleTick). Subscriptions: /clock/report, /heartbeat (BlockReport), /plc/block (PlcBlock, for
-    the end).
+    the end). In a process of its own it has the watchdogs of the drives, too (DriveWatch): /<unit>/block of each axis
+    and spindle, /drive_stops and /events of those that have braked.
     Starts when every expected node has reported that it is ready; ends when the PLC ends the run or after `duration`.
     A node that is silent for the watchdog time no longer holds up a free run. While a free run waits, /heartbeat says
     that the clock is alive.
@@ -88,6 +91,9 @@ class ClockNode(PollingNode):
         self.create_subscription(msg.BlockReport, HEARTBEAT, self._on_heartbeat, BLOCKS)
         self._handover = handover
         self._plc = None
+        self._drives = None if handover is not None else DriveWatch(self, machine)
+        """In one process drives end together with all that could still be recorded."""
+        self._must_settle = self._ends = False
         take = chain(codec_of(PlcBlock).decode, self._on_plc)
         if handover is not None:
             handover.on_block(PLC, self._on_plc)
@@ -98,11 +104,25 @@ class ClockNode(PollingNode):
 
     @property
     def done(self) -> bool:
-        return self._ended_at is not None and time.monotonic() - self._ended_at > FAREWELL
+        ended = self._ended_at is not None and time.monotonic() - self._ended_at > FAREWELL
+        return ended and (not self._must_settle or self._drives_settled())
+
+    @property
+    def settled(self) -> bool:
+        """After a signal to end no more ticks are issued, and no drive is left in motion."""
+        self._ends = True
+        return self._started_at is None or self._drives_settled()
+
+    def _drives_settled(self) -> bool:
+        return self._drives is None or self._drives.settled(self._stamps)
+
+    @property
+    def _stamps(self) -> Stamps:
+        return Stamps(self._start_ns, self._cycle_ns)
 
     def wait_time(self) -> float:
         """Seconds until there is something to do without a message."""
-        if self._started_at is None or self._ended_at is not None:
+        if self._started_at is None or self._ended_at is not None or self._ends:
             return POLL
         if self._free_run:
             return self._pace.wait_time(POLL) if self._handover is None else 0.0
@@ -111,8 +131,10 @@ class ClockNode(PollingNode):
     def advance(self) -> None:
         """Issues the ticks that are due."""
         self.take_polled()
-        if self._ended_at is not None:
+        if self._ended_at is not None or self._ends:
             return
+        if self._drives is not None and self._first_cycle:
+            self._drives.look(self._stamps, begun=self._first_cycle > self._count)
         if self._started_at is None:
             self._start_when_ready()
         elif time.monotonic() < self._started_at:
@@ -168,6 +190,8 @@ class ClockNode(PollingNode):
                 process.take_priority()
             self._start_ns = time.time_ns() + round(START_DELAY * 1e9)
             self._started_at = time.monotonic() + START_DELAY
+            if self._drives is not None:
+                self._drives.restart()
 
     def _require_one_node_each(self) -> None:
         """Raises CncError 26140 when two nodes have a unit: on two computers no claim (claim.py) keeps them apart."""
@@ -207,11 +231,14 @@ class ClockNode(PollingNode):
 
     def _on_heartbeat(self, message: msg.BlockReport) -> None:
         self._watchdog.heard(message.source)
+        if self._drives is not None:
+            self._drives.heard(message.source)
 
     def _on_plc(self, block: Any) -> None:
         self._watchdog.heard(PLC)
         self._pace.heard(PLC, block.first_cycle)
         if block.run_done:
+            self._must_settle = True
             self._end()
 
     def _end(self) -> None:
@@ -240,6 +267,7 @@ def command(machine: str, duration: float | None, wait_for: tuple[str, ...], fre
         make,
         name=CLOCK,
         done=lambda node: node.done,
+        settled=lambda node: node.settled,
         wait=lambda node: node.wait_time(),
         after=lambda node: node.advance(),
     )

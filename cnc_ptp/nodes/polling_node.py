@@ -25,7 +25,7 @@ class PollingNode(Node):
         self._inputs_polled: dict[Subscription[Any], Received] = {}
         self._inputs_due = 0.0
         self.input_period = 0.0
-        """Seconds between two looks for inputs; 0: at each look."""
+        """Seconds between two looks for inputs; 0: at each look, infinite: only with `take_inputs`."""
         super().__init__(*arguments, **options)
 
     def poll(self, message_type: Any, topic: str, received: Received, quality: QoSProfile) -> Subscription[Any]:
@@ -35,7 +35,7 @@ class PollingNode(Node):
         return subscription
 
     def poll_input(self, message_type: Any, topic: str, received: Received, quality: QoSProfile) -> None:
-        """As `poll`, for what people and other machines write: in free run, looks come faster than they do."""
+        """As `poll`, for what is not needed at each look; what people write comes slower than looks in free run."""
         subscription = self.create_subscription(message_type, topic, received, quality, raw=True)
         self._inputs_polled[subscription] = received
 
@@ -50,7 +50,11 @@ class PollingNode(Node):
         take_all(self._polled)
         if self._inputs_polled and (now := time.monotonic()) >= self._inputs_due:
             self._inputs_due = now + self.input_period
-            take_all(self._inputs_polled)
+            self.take_inputs()
+
+    def take_inputs(self) -> None:
+        """The same for those of `poll_input`, now."""
+        take_all(self._inputs_polled)
 
 
 def take_all(polled: Mapping[Subscription[Any], Received]) -> None:

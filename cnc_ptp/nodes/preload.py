@@ -18,6 +18,7 @@ from cnc_ptp.nodes.topics import BLOCK_TYPES, COUPLING_SERVICES, PLC_TOPICS, SER
 MODULES = (axis, clock, nc_channel, plc_bridge, recorder, spindle)
 MESSAGES = {
     *(msg.CycleTick, msg.BlockReport, msg.Event, msg.CommandRecord, msg.LatenessHistogram, msg.HandshakeRequest),
+    msg.DriveStop,
     *(*BLOCK_TYPES.values(), *STATE_TYPES.values(), *COUPLING_SERVICES.values(), *SERIES_SERVICES.values()),
     *(message_type for group in (*PLC_TOPICS.values(), *SERVICES.values()) for message_type in group.values()),
 }

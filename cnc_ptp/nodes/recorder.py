@@ -34,6 +34,7 @@ from cnc_ptp.nodes.topics import (
     BLOCKS,
     COMMAND,
     DIAGNOSTICS,
+    DRIVE_STOPS,
     EVENT,
     EVENTS,
     LATENESS,
@@ -68,9 +69,9 @@ LOOK_PERIOD = 0.05
 class RecorderNode(PollingNode):
     """Writes the recording of a run.
 
-    Subscriptions: /clock/tick, /<unit>/block of every unit (as raw bytes), /events, /commands, /diagnostics, /lateness,
-    the topics of observed_topics, and of /rosout the messages of the nodes of its namespace: these come as raw bytes
-    and are stamped with the time of their arrival, in free run with that of the last tick.
+    Subscriptions: /clock/tick, /<unit>/block of every unit (as raw bytes), /events, /commands, /drive_stops,
+    /diagnostics, /lateness, the topics of observed_topics, and of /rosout the messages of the nodes of its namespace:
+    these come as raw bytes and are stamped with the time of their arrival, in free run with that of the last tick.
     Publishes /clock/report: ready, and in free run the newest tick that it has taken; /events: blocks that did not
     arrive, snapshots. A block that comes twice is recorded once.
     Services: ~/start and ~/stop of a recording, ~/snapshot of the last seconds.
@@ -110,6 +111,8 @@ class RecorderNode(PollingNode):
         self._recording: OnDemand | None = None
         self._early: list[Callable[[], None]] = []
         self._next_cycle = dict.fromkeys(self._units, 0)
+        self._stopped: dict[str, int] = {}
+        """The first cycle of units whose drives have stopped on their own."""
         self._heard = time.monotonic()
         self._report_publisher = self.create_publisher(msg.BlockReport, REPORT, BLOCKS)
         self._event_publisher = EventPublisher(self)
@@ -126,6 +129,7 @@ class RecorderNode(PollingNode):
         for topic, message_type in ((DIAGNOSTICS, DiagnosticArray), (LATENESS, msg.LatenessHistogram)):
             received = self._guarded(partial(self._on_stamped, topic, message_type))
             self.create_subscription(message_type, topic, received, PLC_INPUT, raw=True)
+        self.create_subscription(msg.DriveStop, DRIVE_STOPS, self._guarded(self._on_drive_stop), EVENTS, raw=True)
         for topic, message_type, quality in observed_topics(machine):
             received = self._guarded(partial(self._on_observed, recorded_topic(topic), type_name(message_type)))
             self.create_subscription(message_type, topic, received, quality, raw=True)
@@ -170,8 +174,9 @@ class RecorderNode(PollingNode):
 
     @property
     def settled(self) -> bool:
-        """Nothing has arrived for a while."""
-        return time.monotonic() - self._heard > QUIET
+        """Nothing has arrived for a while, and the clock has ended: it may have to say that drives have braked."""
+        clock_ended = not any(each.get_publisher_count() for each in self._needed[:1])
+        return clock_ended and time.monotonic() - self._heard > QUIET
 
     def _report_ready(self) -> None:
         if self._recording is not None:
@@ -241,18 +246,26 @@ class RecorderNode(PollingNode):
             sink.block(unit, block, handshakes=False)
 
     def _is_new(self, unit: str, stamp_ns: int, cycle: int, count: int) -> bool:
-        """False for a block that is recorded already; an event when earlier blocks are missing."""
+        """False for a block that is recorded already, or that no drive has followed; an event when others are missing.
+
+        A process that was suspended computes what it has missed; its drive has braked meanwhile.
+        """
         expected = self._next_cycle[unit]
         if cycle > expected:
             text = f"recorder: blocks of '{unit}' from cycle {expected} to {cycle - 1} are missing in the recording"
             event = Event(cycle, RECORDER, Severity.ERROR, BLOCKS_MISSING, text)
             self._event_publisher.publish(convert.event_to_message(event, convert.time_message(stamp_ns)))
         self._next_cycle[unit] = max(expected, cycle + count)
-        return bool(cycle >= expected)
+        return bool(expected <= cycle < self._stopped.get(unit, cycle + 1))
 
     def _on_event(self, message: msg.Event) -> None:
         event = convert.message_to_event(message)
         self._single(lambda sink: sink.event(event))
+
+    def _on_drive_stop(self, data: bytes) -> None:
+        message = deserialize_message(data, msg.DriveStop)
+        self._stopped[message.unit] = message.first_cycle
+        self._on_stamped(DRIVE_STOPS, msg.DriveStop, data)
 
     def _on_command(self, message: msg.CommandRecord) -> None:
         command = convert.message_to_record(message)

@@ -17,6 +17,9 @@ REMEMBERED_BLOCKS = QoSProfile(
 )
 """Blocks of axes and spindles: a slave finds those of the tick in which it was coupled."""
 
+NEWEST_BLOCK = QoSProfile(depth=1, reliability=QoSReliabilityPolicy.RELIABLE)
+"""Blocks of which only the newest one counts when somebody looks."""
+
 EVENTS = QoSProfile(
     depth=1000, reliability=QoSReliabilityPolicy.RELIABLE, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL
 )
@@ -40,6 +43,7 @@ EVENT = "events"
 COMMAND = "commands"
 DIAGNOSTICS = "diagnostics"
 JOINT_STATES = "joint_states"
+DRIVE_STOPS = "drive_stops"
 LIFE_SIGN = "plc/life_sign"
 """Names are relative: they are in the namespace of the nodes."""
 

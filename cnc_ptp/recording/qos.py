@@ -31,6 +31,7 @@ BY_TYPE = {
     "cnc_ptp/msg/CommandRecord": REMEMBERED,
     "cnc_ptp/msg/HandshakeRequest": REMEMBERED,
     "cnc_ptp/msg/ChannelOffsets": REMEMBERED,
+    "cnc_ptp/msg/DriveStop": REMEMBERED,
     "cnc_ptp/msg/Override": INPUT,
     "cnc_ptp/msg/Switch": INPUT,
     "cnc_ptp/msg/CyclicCouplingFactor": INPUT,

@@ -35,6 +35,7 @@ EVENT = "cnc_ptp/msg/Event"
 COMMAND = "cnc_ptp/msg/CommandRecord"
 OFFSETS = "cnc_ptp/msg/ChannelOffsets"
 DIAGNOSTICS = "diagnostic_msgs/msg/DiagnosticArray"
+DRIVE_STOP = "cnc_ptp/msg/DriveStop"
 
 
 @dataclass(slots=True)
@@ -62,6 +63,18 @@ class Diagnostic(NamedTuple):
     time_ns: int
     name: str
     values: dict[str, str]
+
+
+class DriveStop(NamedTuple):
+    """What the drive of a unit has done on its own after its last setpoint (DriveStop.msg), mm or deg.
+
+    first_cycle      of both columns, which have one value for each cycle
+    """
+
+    unit: str
+    first_cycle: int
+    actual_position: npt.NDArray[np.float64]
+    actual_velocity: npt.NDArray[np.float64]
 
 
 class Coordinates(NamedTuple):
@@ -132,6 +145,7 @@ class Recorded:
     commands: list[CommandRecord] = field(default_factory=list)
     diagnostics: list[Diagnostic] = field(default_factory=list)
     coordinates: list[Coordinates] = field(default_factory=list)
+    drive_stops: list[DriveStop] = field(default_factory=list)
     reduced: Reduced | None = None
 
     @property
@@ -304,6 +318,7 @@ class Reader:
             COMMAND: self._command,
             DIAGNOSTICS: self._diagnostics,
             OFFSETS: self._offsets,
+            DRIVE_STOP: self._drive_stop,
         }
 
     def begin(self, records: RecordReader) -> None:
@@ -418,6 +433,10 @@ class Reader:
     def _offsets(self, _time: int, topic: str, message: Any) -> None:
         channel = topic.removeprefix("/").removesuffix("/offsets")
         self.recorded.coordinates.append(coordinates(channel, message))
+
+    def _drive_stop(self, _time: int, _topic: str, message: Any) -> None:
+        columns = np.array(message.actual_position), np.array(message.actual_velocity)
+        self.recorded.drive_stops.append(DriveStop(message.unit, message.first_cycle, *columns))
 
 
 def is_kept(attachment: str) -> bool:

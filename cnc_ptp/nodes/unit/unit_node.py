@@ -31,6 +31,7 @@ from cnc_ptp.nodes.topics import (
     BLOCKS,
     COMMAND,
     DIAGNOSTICS,
+    DRIVE_STOPS,
     EVENTS,
     HEARTBEAT,
     LATENESS,
@@ -64,6 +65,7 @@ MACHINE = "machine"
 BLOCK_SKIPPED = 26102
 CAME_TWICE = 26142
 TOO_LATE = 26116
+DRIVE_GONE = 26267
 SOON = 0.0005
 """Seconds between two looks of a node that waits for the rest of a block."""
 LOOK_PERIOD = 0.005
@@ -77,7 +79,7 @@ class UnitNode(PollingNode):
     """Runs one unit of the machine as a ROS node of the unit's name.
 
     Subscriptions: /clock/tick (CycleTick), /heartbeat (BlockReport), /<unit>/block of every upstream and feedback unit
-    and of the master of a coupled axis.
+    and of the master of a coupled axis; of axes and spindles /drive_stops (DriveStop).
     Publishers: /<name>/block, /events and /rosout, /commands, /clock/report, /heartbeat; once per second /diagnostics
     and /lateness; while somebody subscribes /<name>/state.
     Services: /<name>/<command> for the commands of its kind (topics.SERVICES).
@@ -185,6 +187,8 @@ class UnitNode(PollingNode):
         In a free run the tick of the PLC comes before the blocks that it needs.
         """
         self.create_subscription(msg.BlockReport, HEARTBEAT, self._on_heartbeat, BLOCKS)
+        if self.unit.kind in ("axis", "spindle") and self._handover is None:
+            self.create_subscription(msg.DriveStop, DRIVE_STOPS, self._on_drive_stop, EVENTS)
         if self._handover is not None:
             self._needed: list[Subscription[Any]] = []
             self._handover.on_tick(self._take_tick, self.look)
@@ -310,6 +314,19 @@ class UnitNode(PollingNode):
     def _on_heartbeat(self, message: msg.BlockReport) -> None:
         self._watchdog.heard(message.source)
 
+    def _on_drive_stop(self, message: msg.DriveStop) -> None:
+        """This process was silent for too long: what it computes is no longer what its drive has done."""
+        if message.unit == self.unit.name:
+            cycle, silence = (
+                message.first_cycle,
+                f"no setpoint came within the watchdog time of {self._watchdog.seconds:g} s",
+            )
+            self.failure = CncError(
+                DRIVE_GONE,
+                f"{self.unit.kind} {self.unit.name}: its drive has stopped on its own in cycle {cycle}, as {silence}",
+                "the node ends: it does not know where the drive is",
+            )
+
     def _on_service(self, command: str, request: Any, response: Any) -> Any:
         asked = Command(self.unit.name, command, self.arguments(command, request))
         if reason := objection(command, COMMANDS[self.unit.kind][command], request):
@@ -361,7 +378,7 @@ class UnitNode(PollingNode):
     def _compute_ready_blocks(self) -> None:
         for source in self._gate.skipped():
             self._lose(source, f"block {self._gate.next_cycle} of '{source}' is missing, a later one came")
-        while True:
+        while self.failure is None:
             if not self._gate.opened:
                 begun = self._gate.begin()
                 if begun is None:

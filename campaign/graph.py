@@ -1,0 +1,123 @@
+"""A graph of processes as a user starts it, seen from outside: who its processes are, and what is left of them."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+import psutil
+
+SUPERVISOR, SERVER = "supervisor", "server of processes"
+OBSERVERS = ("plc_bridge", "clock", "recorder")
+START_PATIENCE = 120.0
+"""Seconds to the first cycle: a start may be tried three times."""
+POLL = 0.01
+CLAIM = "cnc_ptp/domain/"
+
+
+class Graph:
+    """A run with a recording, from its start to the end of its last process."""
+
+    def __init__(self, words: Sequence[str], recording: Path, *, domain: int) -> None:
+        self.recording = recording
+        self._log = recording.with_suffix(".log")
+        self._shared = shared_memory()
+        self.domain = domain
+        environment = os.environ | {"ROS_DOMAIN_ID": str(domain)}
+        command = [sys.executable, "-m", "cnc_ptp", "run", *words, "--record", str(recording)]
+        with self._log.open("w") as log:
+            self.process = subprocess.Popen(command, stdout=log, stderr=log, stdin=subprocess.DEVNULL, env=environment)
+        self.processes: dict[str, psutil.Process] = {}
+
+    def wait_for_start(self) -> bool:
+        """True when the recording has begun, with the first cycle, and every process is known by its name."""
+        deadline = time.monotonic() + START_PATIENCE
+        while time.monotonic() < deadline and self.running:
+            if self.recording.exists():
+                self.processes = processes_of(psutil.Process(self.process.pid))
+                return True
+            time.sleep(POLL)
+        return False
+
+    @property
+    def running(self) -> bool:
+        return self.process.poll() is None
+
+    @property
+    def output(self) -> str:
+        return self._log.read_text(errors="replace")
+
+    def wait(self, seconds: float) -> bool:
+        """True when it has ended within so many seconds."""
+        try:
+            self.process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            return False
+        return True
+
+    def interrupt(self) -> None:
+        """Ctrl-C: everything stops on its ramps."""
+        if self.running:
+            self.process.send_signal(signal.SIGINT)
+
+    def orphans(self, patience: float = 10.0) -> list[str]:
+        """Processes of the run that have outlived it; they are ended."""
+        family = [each for name, each in self.processes.items() if name != SUPERVISOR]
+        _, alive = psutil.wait_procs(family, timeout=patience)
+        alive = [each for each in alive if each.status() != psutil.STATUS_ZOMBIE]
+        names = [name for name, each in self.processes.items() if each in alive]
+        for each in alive:
+            each.kill()
+        return names
+
+    def leftovers(self) -> list[str]:
+        """Shared memory and claims that the run has not taken away."""
+        claims = [name for name in Path("/proc/net/unix").read_text().split() if name == f"@{CLAIM}{self.domain}"]
+        return sorted(shared_memory() - self._shared) + claims
+
+    def end(self) -> None:
+        """Whatever became of it: nothing of it runs on."""
+        if self.running:
+            self.process.kill()
+        self.process.wait()
+        self.orphans(5.0)
+
+
+def processes_of(supervisor: psutil.Process) -> dict[str, psutil.Process]:
+    """By name: units, plc, clock, recorder, and those that run them."""
+    found = {SUPERVISOR: supervisor}
+    for child in supervisor.children(recursive=True):
+        try:
+            words = " ".join(child.cmdline()).split()
+        except psutil.NoSuchProcess:
+            continue
+        node = next((word.removeprefix("cnc_ptp.nodes.") for word in words if word.startswith("cnc_ptp.nodes.")), "")
+        if node:
+            name = node if node in OBSERVERS else words[words.index(f"cnc_ptp.nodes.{node}") + 2]
+            found["plc" if name == "plc_bridge" else name] = child
+        else:
+            found[SERVER if "forkserver" in " ".join(words) else f"process {child.pid}"] = child
+    return found
+
+
+def shared_memory() -> set[str]:
+    return {f"/dev/shm/{each.name}" for each in Path("/dev/shm").iterdir()} if Path("/dev/shm").is_dir() else set()
+
+
+def free_domain(wish: int) -> int:
+    """A ROS domain of 101 … 200 on which no run is under way."""
+    for number in range(wish, wish + 100):
+        domain = 101 + number % 100
+        with socket.socket(socket.AF_UNIX) as claim:
+            try:
+                claim.bind(f"\0{CLAIM}{domain}")
+            except OSError:
+                continue
+            return domain
+    raise RuntimeError("100 runs at once")

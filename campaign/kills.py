@@ -1,0 +1,229 @@
+"""Processes of a graph that die or are held up at random moments, and what became of the machine."""
+
+from __future__ import annotations
+
+import os
+import random
+import re
+import signal
+import time
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import psutil
+
+from campaign import motion
+from campaign.cases import CASES, Case
+from campaign.graph import SERVER, SUPERVISOR, Graph, free_domain
+from cnc_ptp.errors import CncError
+from cnc_ptp.nodes.forked import SERVER_ENDED
+from cnc_ptp.parameters import read_machine
+from cnc_ptp.recording.reader import Recorded, read_recording
+
+KILL, TERM, HOLD = "SIGKILL", "SIGTERM", "SIGSTOP"
+END_PATIENCE = 45.0
+"""Seconds in which a run must have ended after a fault."""
+SURVIVED_AFTER = 3.0
+"""Seconds after which a run that goes on has survived."""
+SHORTEST, LONGEST = 0.05, 10.0
+"""Seconds for which a process is held up."""
+FLUSHED = 600
+"""Cycles that a recorder that dies may not have written yet."""
+RETRACTED = 0.01
+"""mm; the retract begins within a block of its event."""
+HELD_SHARE, TERM_SHARE = 0.3, 0.2
+
+
+@dataclass
+class Fault:
+    """What happens, and when."""
+
+    case: str
+    node: str
+    signal: str
+    hold: float
+    """Seconds of SIGSTOP, 0 for the others."""
+    moment: float
+    """Seconds after the first cycle."""
+
+
+@dataclass
+class Row:
+    """A fault and its consequences; `problems` is empty if all was as it must be."""
+
+    fault: Fault
+    outcome: str = ""
+    """stopped, survived; or over: the run had ended before."""
+    problems: list[str] = field(default_factory=list)
+    seconds: float = 0.0
+    """From the fault to the end of the run."""
+    cycles: int = 0
+    own_stops: dict[str, int] = field(default_factory=dict)
+    """Cycles in which drives have braked on their own, by unit."""
+    torn: dict[str, list[float]] = field(default_factory=dict)
+    """How far coupled units came apart, and how far they may."""
+    load: float = 0.0
+
+    @property
+    def good(self) -> bool:
+        return not self.problems
+
+    def as_json(self) -> dict[str, Any]:
+        return asdict(self) | {"good": self.good}
+
+
+def faults(seed: int) -> Iterator[Fault]:
+    """Without an end: case after case, everything else at random."""
+    choose = random.Random(seed)
+    for number in range(1_000_000_000):
+        case = CASES[number % len(CASES)]
+        machine = read_machine(str(case.machine))
+        units = [*machine.axes, *machine.spindles]
+        nodes = [*units, *units, *machine.channels, "plc", "clock", "recorder", SUPERVISOR, SERVER]
+        what = choose.random()
+        name = HOLD if what < HELD_SHARE else TERM if what < HELD_SHARE + TERM_SHARE else KILL
+        hold = round(SHORTEST * (LONGEST / SHORTEST) ** choose.random(), 3) if name == HOLD else 0.0
+        yield Fault(case.name, choose.choice(nodes), name, hold, round(choose.uniform(0.1, case.seconds), 3))
+
+
+def run(fault: Fault, folder: Path, *, domain: int) -> Row:
+    """Starts the case of the fault, lets it happen, and checks everything."""
+    case = next(each for each in CASES if each.name == fault.case)
+    row = Row(fault, load=os.getloadavg()[0])
+    recording = folder / "run.mcap"
+    graph = Graph(case.words(folder), recording, domain=domain)
+    try:
+        if not graph.wait_for_start():
+            row.problems.append(f"the run did not start: {graph.output[-300:]}")
+            return row
+        begin = time.monotonic()
+        time.sleep(max(0.0, fault.moment))
+        if not graph.running:
+            row.outcome = "over"
+            return row
+        happened = time.monotonic()
+        strike(graph.processes[fault.node], fault)
+        row.outcome = await_end(graph, fault)
+        row.seconds = round(time.monotonic() - happened, 2)
+        row.problems += left_behind(graph, fault, row.outcome)
+        written = int((happened - begin) * 1e6 / read_machine(str(case.machine)).cycle_time_us)
+        check_recording(row, case, recording, written)
+    finally:
+        graph.end()
+    return row
+
+
+def strike(process: psutil.Process, fault: Fault) -> None:
+    with suppress(psutil.NoSuchProcess):
+        process.send_signal(getattr(signal, fault.signal))
+        if fault.signal == HOLD:
+            time.sleep(fault.hold)
+            process.send_signal(signal.SIGCONT)
+
+
+def await_end(graph: Graph, fault: Fault) -> str:
+    """What became of it; one that survived is interrupted."""
+    if fault.signal == HOLD and not graph.wait(SURVIVED_AFTER):
+        graph.interrupt()
+        return "survived" if graph.wait(END_PATIENCE) else "does not end"
+    return "stopped" if graph.wait(END_PATIENCE) else "does not end"
+
+
+def left_behind(graph: Graph, fault: Fault, outcome: str) -> Iterator[str]:
+    """Orphans, claims, shared memory, and an end that does not say who is to blame."""
+    if outcome == "does not end":
+        yield f"the run had not ended after {END_PATIENCE:g} s"
+        return
+    status = graph.process.returncode
+    expected = {SUPERVISOR: -signal.SIGKILL} if fault.signal == KILL else {}
+    if status != expected.get(fault.node, 1):
+        yield f"exit status {status}"
+    if orphans := graph.orphans():
+        yield f"orphans: {', '.join(orphans)}"
+    if left := graph.leftovers():
+        yield f"left behind: {', '.join(left)}"
+    output = graph.output
+    if "Traceback" in output:
+        yield f"a traceback: {output[output.index('Traceback') :][:400]}"
+    if outcome == "stopped" and not any(name in output for name in names(fault, graph)):
+        yield f"nobody names {fault.node}: {output[-400:]}"
+
+
+def names(fault: Fault, graph: Graph) -> list[str]:
+    """Texts of which one must be told, if the run has stopped."""
+    if fault.node == SUPERVISOR:
+        return ["P-ERR-26106"] if fault.signal == TERM else [""]
+    if fault.node == SERVER:
+        return [SERVER_ENDED] if fault.signal != HOLD else ["P-ERR-"]
+    died = f"P-ERR-26104 node '{fault.node}' (process {graph.processes[fault.node].pid})"
+    return (
+        [died] if fault.signal != HOLD else [died, f"no block of '{fault.node}' came", f"of '{fault.node}' is missing"]
+    )
+
+
+def check_recording(row: Row, case: Case, recording: Path, written: int) -> None:
+    """Readable to the last block, everything at rest on ramps within limits, nothing torn apart."""
+    machine, fault = read_machine(str(case.machine)), row.fault
+    try:
+        recorded = read_recording(recording)
+    except CncError as error:
+        row.problems.append(f"the recording is not readable: {error}")
+        return
+    row.cycles = recorded.last_cycle + 1
+    cut = fault.node == "recorder" and fault.signal == KILL
+    unsupervised = fault.node == SUPERVISOR and fault.signal == KILL
+    if not recorded.complete and not cut and not unsupervised:
+        row.problems.append(f"the recording is not complete: {recorded.missing}")
+    if row.cycles < written - FLUSHED - machine.watchdog_ms * 1000 // machine.cycle_time_us:
+        row.problems.append(f"the recording ends at cycle {row.cycles}, the fault came at {written}")
+    of_recorder = fault.node == "recorder" and fault.signal != HOLD
+    row.problems += motion.problems(recorded, machine, ended=not of_recorder)
+    row.own_stops = {stop.unit: len(stop.actual_position) for stop in recorded.drive_stops}
+    check_links(row, case, recorded)
+    row.problems += not_retracted(recorded)
+
+
+def not_retracted(recorded: Recorded) -> Iterator[str]:
+    """Threads that are broken off with a retract whose axis has not gone that way, though its process lives."""
+    for event in recorded.events:
+        told = re.search(r"axis (\w+) retracts by ([0-9.]+) mm while the path follows", event.text)
+        rows = recorded.states.get(f"/{told[1].lower()}/state") if told else None
+        if told is None or rows is None or any(stop.unit == told[1].lower() for stop in recorded.drive_stops):
+            continue
+        positions = rows["set_position"]
+        way = abs(positions[-1] - positions[np.searchsorted(rows["cycle"], event.cycle)])
+        if abs(way - float(told[2])) > RETRACTED:
+            yield f"{told[1]} has retracted by {way:.3f} mm instead of {told[2]} mm"
+
+
+def check_links(row: Row, case: Case, recorded: Recorded) -> None:
+    machine = read_machine(str(case.machine))
+    for link in case.links:
+        name = f"{link.master}-{link.slave}"
+        apart, permitted = motion.torn(recorded, link, machine)
+        row.torn[name] = [round(apart, 3), round(permitted, 3)]
+        if apart > permitted:
+            row.problems.append(f"{name}: {apart:.3f} apart, {permitted:.3f} permitted")
+
+
+def campaign(seed: int, count: int, minutes: float, folder: Path, *, first: int = 0) -> Iterator[Row]:
+    """Rows until there are `count`, or the time is over; `first`: faults of the seed that are left out."""
+    end = time.monotonic() + 60.0 * minutes
+    domain = free_domain(seed)
+    for number, fault in enumerate(faults(seed)):
+        if number < first:
+            continue
+        if number >= first + count or time.monotonic() > end:
+            return
+        place = folder / f"{number:04}"
+        place.mkdir(parents=True, exist_ok=True)
+        row = run(fault, place, domain=domain)
+        yield row
+        if row.good:
+            for each in place.iterdir():
+                each.unlink()
+            place.rmdir()

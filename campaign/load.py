@@ -1,0 +1,254 @@
+"""Load, time and company: what a running machine must not notice, or must survive."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import asdict, dataclass, field
+from math import ceil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import psutil
+
+from campaign import motion
+from campaign.cases import CASES, MILLING, Case
+from campaign.graph import Graph, free_domain
+from cnc_ptp.parameters import read_machine
+from cnc_ptp.protocol.blocks import Severity
+from cnc_ptp.recording.node_figures import LATENESS_MAX, LOST_BLOCKS
+from cnc_ptp.recording.reader import Recorded, read_recording
+
+SECONDS = 8.0
+"""Of a run that something is done to."""
+FROZEN = 3.0
+"""Seconds for which a whole graph stands still."""
+ROUND = 3.0
+"""Seconds that a round of the program takes at least."""
+SUBSCRIBERS, FOREIGN_NODES = 200, 50
+SETTLED = 0.2
+"""Part of a soak after which memory must not grow any more."""
+GROWTH_MB = 1.0
+"""What a process may grow by in a soak."""
+
+
+@dataclass
+class LoadRow:
+    """A condition and its consequences."""
+
+    name: str
+    figures: dict[str, float] = field(default_factory=dict)
+    problems: list[str] = field(default_factory=list)
+
+    def as_json(self) -> dict[str, Any]:
+        return asdict(self) | {"good": not self.problems}
+
+
+@contextmanager
+def started(name: str, folder: Path, domain: int) -> Iterator[Graph]:
+    """A run of a case that has begun."""
+    case = case_of(name)
+    place = folder / f"{name}_{domain}"
+    place.mkdir(parents=True, exist_ok=True)
+    graph = Graph(case.words(place), place / "run.mcap", domain=domain)
+    try:
+        if not graph.wait_for_start():
+            raise RuntimeError(f"the run did not start: {graph.output[-500:]}")
+        yield graph
+    finally:
+        graph.end()
+
+
+def case_of(name: str) -> Case:
+    return next(case for case in CASES if case.name == name)
+
+
+def finished(row: LoadRow, graph: Graph, name: str) -> Recorded:
+    """Interrupts a run and checks that nothing but that has stopped it."""
+    if not graph.running:
+        row.problems.append(f"the run has ended by itself: {graph.output[-400:]}")
+    graph.interrupt()
+    if not graph.wait(60.0):
+        row.problems.append("the run does not end")
+        graph.end()
+    if orphans := graph.orphans():
+        row.problems.append(f"orphans: {orphans}")
+    recorded = read_recording(graph.recording)
+    machine = read_machine(str(case_of(name).machine))
+    row.problems += motion.problems(recorded, machine, ended=True)
+    errors = {event.text for event in recorded.events if event.severity == Severity.ERROR and event.error_id != 26106}
+    row.problems += sorted(errors)
+    newest = {each.name: each.values for each in recorded.diagnostics}
+    row.figures |= {
+        "cycles": recorded.last_cycle + 1,
+        "lost blocks": sum(int(values.get(LOST_BLOCKS, 0)) for values in newest.values()),
+        "largest lateness [ms]": largest_lateness(recorded),
+        "load": round(os.getloadavg()[0], 1),
+    }
+    return recorded
+
+
+def busy_processors(folder: Path, domain: int) -> LoadRow:
+    """Twice as many programs as processors that never rest."""
+    row = LoadRow("all processors busy")
+    burners = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(2 * (os.cpu_count() or 1))]
+    try:
+        with started("program", folder, domain) as graph:
+            time.sleep(SECONDS)
+            finished(row, graph, "program")
+    finally:
+        for burner in burners:
+            burner.kill()
+            burner.wait()
+    return row
+
+
+def suspended(folder: Path, domain: int) -> LoadRow:
+    """All processes of a graph stand still together, as those of a suspended computer."""
+    row = LoadRow(f"whole graph suspended for {FROZEN:g} s")
+    with started("program", folder, domain) as graph:
+        time.sleep(2.0)
+        family = graph.processes.values()
+        for number, wait in ((signal.SIGSTOP, FROZEN), (signal.SIGCONT, 4.0)):
+            for process in family:
+                with suppress(psutil.NoSuchProcess):
+                    process.send_signal(number)
+            time.sleep(wait)
+        finished(row, graph, "program")
+    return row
+
+
+COMPANY = """
+import sys, time, rclpy
+from cnc_ptp import msg
+from cnc_ptp.nodes import process
+process.initialise()
+what, number = sys.argv[1], int(sys.argv[2])
+count = 0
+def heard(message):
+    global count
+    count += 1
+from cnc_ptp.nodes.topics import BLOCKS, EVENTS
+if what == "subscribers":
+    node = rclpy.create_node("crowd", enable_rosout=False, start_parameter_services=False)
+    for n in range(number):
+        node.create_subscription(msg.AxisBlock, ["x", "y", "z"][n % 3] + "/block", heard, BLOCKS)
+elif what == "foreign":
+    from std_msgs.msg import String
+    nodes = [rclpy.create_node(f"foreign{n}", enable_rosout=False) for n in range(number)]
+    writers = [node.create_publisher(String, f"foreign{n}/text", 10) for n, node in enumerate(nodes)]
+    node = nodes[0]
+else:
+    node = rclpy.create_node("late", enable_rosout=False, start_parameter_services=False)
+    node.create_subscription(msg.CommandRecord, "commands", heard, EVENTS)
+executor = process.EventsExecutor()
+executor.add_node(node)
+print("there", flush=True)
+end = time.monotonic() + float(sys.argv[3])
+while time.monotonic() < end:
+    executor.spin_once(timeout_sec=0.05)
+print(count, flush=True)
+executor.shutdown()
+rclpy.try_shutdown()
+"""
+"""A program of its own on the domain of the machine: subscribers, foreign nodes, or one that comes late."""
+
+
+def company(what: str, number: int, folder: Path, domain: int) -> LoadRow:
+    """Others on the same domain, who come while the machine runs."""
+    row = LoadRow(f"{number} {what}")
+    with started("program", folder, domain) as graph:
+        words = [sys.executable, "-c", COMPANY, what, str(number), str(SECONDS)]
+        environment = os.environ | {"ROS_DOMAIN_ID": str(domain)}
+        done = subprocess.run(words, env=environment, capture_output=True, text=True, timeout=120, check=False)
+        row.figures["messages that they got"] = float(done.stdout.split()[-1]) if done.returncode == 0 else -1.0
+        if done.returncode or (what != "foreign" and row.figures["messages that they got"] < 1.0):
+            row.problems.append(f"they got nothing: {done.stdout} {done.stderr[-300:]}")
+        finished(row, graph, "program")
+    return row
+
+
+def two_machines(folder: Path, domain: int) -> LoadRow:
+    """The same program on two domains at once: equal to the bit, as far as both have come."""
+    row = LoadRow("two machines on two domains")
+    with (
+        started("tapping", folder, domain) as first,
+        started("tapping", folder, free_domain(domain + 1)) as second,
+    ):
+        time.sleep(SECONDS)
+        both = [finished(row, graph, "tapping") for graph in (first, second)]
+    cycles = int(0.5 * SECONDS * 1000.0)
+    for topic, rows in both[0].states.items():
+        other = both[1].states[topic]
+        for name in rows.dtype.names or ():
+            if not name.startswith("header") and not np.array_equal(rows[name][:cycles], other[name][:cycles]):
+                row.problems.append(f"{topic} {name} differs")
+    return row
+
+
+def soak(minutes: float, folder: Path, domain: int) -> LoadRow:
+    """A machine that runs for long: memory, handles, threads of each process, lateness of the blocks."""
+    row = LoadRow(f"soak of {minutes:g} minutes")
+    place = folder / "soak"
+    place.mkdir(parents=True, exist_ok=True)
+    case = case_of("program")
+    program = place / "soak.nc"
+    rounds = ceil(60.0 * minutes / ROUND) + 1
+    program.write_text(f"%soak\nN10 G90 G17 M03 S3000\n{MILLING * rounds}M30\n")
+    graph = Graph([str(case.machine), "--program", str(program)], place / "run.mcap", domain=domain)
+    samples: list[dict[str, tuple[float, int, int]]] = []
+    try:
+        if not graph.wait_for_start():
+            row.problems.append(f"the run did not start: {graph.output[-500:]}")
+            return row
+        end = time.monotonic() + 60.0 * minutes
+        while time.monotonic() < end and graph.running:
+            time.sleep(min(5.0, 6.0 * minutes))
+            with suppress(psutil.NoSuchProcess):
+                samples.append({name: figures_of(each) for name, each in graph.processes.items()})
+        finished(row, graph, "program")
+    finally:
+        graph.end()
+    grown(row, samples)
+    return row
+
+
+def figures_of(process: psutil.Process) -> tuple[float, int, int]:
+    """Memory of its own in MB, file handles, threads."""
+    return process.memory_full_info().uss / 1e6, process.num_fds(), process.num_threads()
+
+
+def grown(row: LoadRow, samples: list[dict[str, tuple[float, int, int]]]) -> None:
+    """The growth from the end of the first fifth on."""
+    settled = samples[int(len(samples) * SETTLED) :]
+    for name in settled[0]:
+        memory, handles, threads = (settled[-1][name][n] - settled[0][name][n] for n in range(3))
+        row.figures[f"{name}: MB more"] = round(memory, 2)
+        if memory > GROWTH_MB:
+            row.problems.append(f"{name} has grown by {memory:.2f} MB")
+        if handles > 0 or threads > 0:
+            row.problems.append(f"{name} has {handles} more file handles, {threads} more threads")
+
+
+def largest_lateness(recorded: Recorded) -> float:
+    """Of any block, ms."""
+    return max((float(each.values.get(LATENESS_MAX, 0.0)) for each in recorded.diagnostics), default=0.0)
+
+
+def conditions(folder: Path, *, minutes: float) -> Iterator[LoadRow]:
+    """All of them, one after another; `minutes` of the soak, 0: none."""
+    domain = free_domain(os.getpid())
+    yield busy_processors(folder, domain)
+    yield suspended(folder, domain)
+    yield company("subscribers", SUBSCRIBERS, folder, domain)
+    yield company("foreign", FOREIGN_NODES, folder, domain)
+    yield company("late", 1, folder, domain)
+    yield two_machines(folder, domain)
+    if minutes:
+        yield soak(minutes, folder, domain)

@@ -1,0 +1,115 @@
+"""What moved, from a recording: standstill at the end, limits on the way, what is coupled stays together.
+
+The checks are their own: differences of recorded values, no formula of the kernel.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from campaign.cases import Link
+from cnc_ptp.parameters import MachineParameters
+from cnc_ptp.recording.reader import Recorded
+
+Values = npt.NDArray[np.float64]
+
+ROUNDING = 1e-6
+OF_ACTUAL = 1.15
+"""Actual values may exceed the acceleration of the set values by so much: a controller that catches up."""
+RPM = 6.0
+"""deg/s"""
+
+
+class Track(NamedTuple):
+    """Set and actual values of a unit, mm or deg; actual ones with what its drive did on its own."""
+
+    cycles: npt.NDArray[np.uint64]
+    set_position: Values
+    set_velocity: Values
+    actual_position: Values
+    actual_velocity: Values
+    own_stop: int
+    """Cycles in which the drive has braked on its own."""
+
+
+def tracks(recorded: Recorded) -> dict[str, Track]:
+    """Of every axis and spindle."""
+    found = {}
+    for topic, rows in recorded.states.items():
+        unit = topic.split("/")[1]
+        names = rows.dtype.names or ()
+        if "set_position" in names:
+            columns = [rows[name] for name in ("set_position", "set_velocity", "actual_position", "actual_velocity")]
+        elif "set_speed_rpm" in names:
+            speeds = [rows[name] * RPM for name in ("set_speed_rpm", "actual_speed_rpm")]
+            columns = [rows["set_position_deg"], speeds[0], rows["actual_position_deg"], speeds[1]]
+        else:
+            continue
+        stop = next((each for each in recorded.drive_stops if each.unit == unit), None)
+        if stop is not None:
+            columns[2] = np.concatenate([columns[2], stop.actual_position])
+            columns[3] = np.concatenate([columns[3], stop.actual_velocity])
+        found[unit] = Track(rows["cycle"], *columns, own_stop=0 if stop is None else len(stop.actual_position))
+    return found
+
+
+def problems(recorded: Recorded, machine: MachineParameters, *, ended: bool) -> Iterator[str]:
+    """What is wrong with the motions of a recording; `ended`: it goes on to the standstill."""
+    cycle = machine.cycle_time_us * 1e-6
+    for unit, track in tracks(recorded).items():
+        if len(track.cycles) and np.any(np.diff(track.cycles.astype(np.int64)) != 1):
+            yield f"{unit}: cycles are missing"
+        stop = next((each for each in recorded.drive_stops if each.unit == unit), None)
+        if stop is not None and stop.first_cycle != track.cycles[-1] + 1:
+            yield f"{unit}: the drive stops in cycle {stop.first_cycle}, the last setpoint is of {track.cycles[-1]}"
+        if ended and stop is None and track.set_velocity[-1] != 0.0:
+            yield f"{unit}: still moves at the end with {track.set_velocity[-1]:.3f}"
+        if ended and stop is not None and track.actual_velocity[-1] != 0.0:
+            yield f"{unit}: its drive still moves at the end"
+        velocity, acceleration = limits(machine, unit)
+        steps = np.abs(np.diff(track.set_velocity)) / cycle
+        if steps.max(initial=0.0) > acceleration * (1.0 + ROUNDING) + ROUNDING:
+            yield f"{unit}: set acceleration {steps.max():.1f} above {acceleration:.1f} at {int(steps.argmax())}"
+        steps = np.abs(np.diff(track.actual_velocity)) / cycle
+        if steps.max(initial=0.0) > acceleration * OF_ACTUAL + ROUNDING:
+            yield f"{unit}: actual acceleration {steps.max():.1f} above {acceleration:.1f} at {int(steps.argmax())}"
+        moved = np.abs(np.diff(track.actual_position)) / cycle
+        if moved.max(initial=0.0) > velocity * OF_ACTUAL + ROUNDING:
+            yield f"{unit}: its position jumps ({moved.max():.1f} per second at {int(moved.argmax())})"
+
+
+def limits(machine: MachineParameters, unit: str) -> tuple[float, float]:
+    """Velocity and acceleration that it can have at most."""
+    if unit in machine.axes:
+        axis = machine.axes[unit]
+        return axis.max_velocity, max(axis.max_acceleration, axis.emergency_deceleration)
+    gears = machine.spindles[unit].gears.values()
+    curves = [gear.curve.maximum for gear in gears if gear.curve is not None]
+    accelerations = [max(gear.max_acceleration, gear.emergency_deceleration) for gear in gears]
+    return max(gear.max_speed for gear in gears), max([*accelerations, *curves])
+
+
+def torn(recorded: Recorded, link: Link, machine: MachineParameters) -> tuple[float, float]:
+    """How far actual positions of a master and its slave have left their relation, and how far they may, mm (deg).
+
+    Somebody that is lost is noticed with the next block or the one after it: until then the others go on.
+    """
+    found = tracks(recorded)
+    master, slave = found[link.master], found[link.slave]
+    count = max(len(master.actual_position), len(slave.actual_position))
+    leads, follows = (held(each.actual_position, count) for each in (master, slave))
+    apart = follows - follows[0] - link.factor * (leads - leads[0])
+    fastest = max(np.abs(slave.actual_velocity).max(), abs(link.factor) * np.abs(master.actual_velocity).max())
+    before = min(len(master.cycles), len(slave.cycles))
+    lag = np.abs(apart[:before]).max(initial=0.0) if before else 0.0
+    reaction = 2 * machine.block_cycles * machine.cycle_time_us * 1e-6
+    return float(np.abs(apart).max()), float(lag + fastest * reaction)
+
+
+def held(values: Values, count: int) -> Values:
+    """Extended by the last value."""
+    return np.concatenate([values, np.full(count - len(values), values[-1])])

@@ -1,0 +1,185 @@
+"""The watchdogs of the simulated drives: what becomes of an axis or spindle whose process has died.
+
+A simulated drive is computed in the process of its unit and would end with it, in mid-motion. Its watchdog is here, in
+the process of the clock, which is the field bus of this machine: with the newest block of each unit it knows where the
+drive is, and lets it brake when no more setpoints come.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from functools import partial
+from typing import NamedTuple
+
+from cnc_ptp import msg
+from cnc_ptp.control.drives.setpoint_watchdog import (
+    OwnStop,
+    axis_stop,
+    braking_deceleration,
+    own_stop,
+    spindle_stop,
+)
+from cnc_ptp.errors import Value
+from cnc_ptp.motion.profile import Profile
+from cnc_ptp.nodes import convert
+from cnc_ptp.nodes.events import EventPublisher
+from cnc_ptp.nodes.polling_node import PollingNode
+from cnc_ptp.nodes.topics import BLOCK_CLASSES, BLOCK_TYPES, DRIVE_STOPS, EVENTS, NEWEST_BLOCK, block_topic
+from cnc_ptp.nodes.watchdog import Watchdog
+from cnc_ptp.parameters import MachineParameters
+from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
+from cnc_ptp.protocol.blocks import AxisBlock, Event, Severity, SpindleBlock
+from cnc_ptp.protocol.event_values import event_values
+from cnc_ptp.wire.block_codec import codec_of
+from cnc_ptp.wire.stamps import Stamps
+
+DRIVE_BRAKED = 26265
+DRIVE_STOOD = 26266
+
+
+class LastValues(NamedTuple):
+    """The state of a drive in the cycle of its last setpoint, mm (deg)."""
+
+    cycle: int
+    position: float
+    velocity: float
+    profile: Profile
+    """Its stop from there."""
+    deceleration: float
+    commanded: bool
+    """The last setpoint is one of a motion."""
+
+
+class DriveWatch:
+    """Holds the newest block of each axis and spindle as bytes, and lets the drive of a silent unit brake.
+
+    Nobody is woken by these blocks, and none is decoded while its unit lives. In machine time a stop begins with the
+    cycle after the last setpoint, as everything else that depends on the unit: units wait for its blocks, so that all
+    of them come to that cycle when the watchdog time has passed.
+    """
+
+    def __init__(self, node: PollingNode, machine: MachineParameters) -> None:
+        self._node = node
+        self._machine = machine
+        axes = [name for name, axis in machine.axes.items() if not axis.virtual]
+        self._classes: dict[str, type] = dict.fromkeys(axes, AxisBlock) | dict.fromkeys(machine.spindles, SpindleBlock)
+        self._units = [*self._classes]
+        """Those whose drives have not stopped on their own."""
+        self._newest: dict[str, bytes] = {}
+        self._seconds = machine.watchdog_ms / 1000.0
+        self._watchdog = Watchdog(self._units, seconds=self._seconds)
+        self._cycle_time = machine.cycle_time_us * 1e-6
+        self._due = 0.0
+        self._publisher = node.create_publisher(msg.DriveStop, DRIVE_STOPS, EVENTS)
+        self._events = EventPublisher(node)
+        node.input_period = float("inf")  # this class says when
+        for unit, block_class in self._classes.items():
+            kind = next(kind for kind, each in BLOCK_CLASSES.items() if each is block_class)
+            node.poll_input(BLOCK_TYPES[kind], block_topic(unit), partial(self._take, unit), NEWEST_BLOCK)
+
+    def heard(self, unit: str) -> None:
+        """A unit that waits for others says that it lives."""
+        self._watchdog.heard(unit)
+
+    def restart(self) -> None:
+        """The run begins: all count as heard."""
+        self._watchdog.restart()
+
+    def look(self, stamps: Stamps, *, begun: bool) -> None:
+        """To be called often: some times in each watchdog time, drives whose unit has been silent for it brake."""
+        now = time.monotonic()
+        if now < self._due:
+            return
+        self._due = now + self._seconds / 4.0
+        self._node.take_inputs()
+        if self._watchdog.was_suspended():
+            self._watchdog.restart()
+            return
+        for unit in self._watchdog.silent([*self._units], begun=begun):
+            self._stop(unit, stamps)
+
+    def settled(self, stamps: Stamps) -> bool:
+        """At the end of a run: True when no drive got a setpoint of a motion last; those of silent units brake before.
+
+        Then nobody says that it lives, so that a drive that stands is left alone.
+        """
+        self._node.take_inputs()
+        last = {unit: self._last_values(unit) for unit in self._units}
+        moved = [unit for unit, values in last.items() if values is not None and values.commanded]
+        for unit in self._watchdog.silent(moved, begun=True):
+            self._stop(unit, stamps)
+            moved.remove(unit)
+        return not moved
+
+    def _take(self, unit: str, data: bytes) -> None:
+        self._newest[unit] = data
+        self._watchdog.heard(unit)
+
+    def _stop(self, unit: str, stamps: Stamps) -> None:
+        last = self._last_values(unit)
+        self._units.remove(unit)
+        if last is None:  # no block has ever come: the drive has not been moved
+            return
+        stop = own_stop(last.profile, self._cycle_time)
+        self._publish(unit, last.cycle + 1, stop, stamps)
+        place, length = stop.positions[-1], self._length_unit(unit)
+        watched = f"no setpoint came after cycle {last.cycle} within its watchdog time of {self._seconds:g} s"
+        silence = f"drive of {self._name(unit)}: {watched}"
+        if len(stop.positions) > 1:
+            ramp = f"{last.velocity:.4f} {length}/s with {last.deceleration:g} {length}/s²"
+            text = f"{silence}; it has braked on its own from {ramp} to a standstill at {place:.4f} {length}"
+            values: dict[str, Value] = {"velocity": last.velocity, "deceleration": last.deceleration, "place": place}
+            self._tell(last.cycle + 1, DRIVE_BRAKED, text, unit, values, stamps)
+        else:
+            text = f"{silence}; it stands at {place:.4f} {length}"
+            self._tell(last.cycle + 1, DRIVE_STOOD, text, unit, {"place": place}, stamps)
+
+    def _publish(self, unit: str, first_cycle: int, stop: OwnStop, stamps: Stamps) -> None:
+        message = msg.DriveStop(unit=unit, first_cycle=first_cycle)
+        message.actual_position, message.actual_velocity = stop.positions, stop.velocities
+        message.header.stamp = convert.time_message(stamps.at(first_cycle))
+        self._publisher.publish(message)
+
+    def _tell(self, cycle: int, number: int, text: str, unit: str, values: Mapping[str, Value], stamps: Stamps) -> None:
+        given = event_values(values, self._length_unit(unit))
+        event = Event(cycle, self._node.get_name(), Severity.ERROR, number, text, values=given)
+        self._events.publish(convert.event_to_message(event, convert.time_message(stamps.at(cycle))))
+
+    def _last_values(self, unit: str) -> LastValues | None:
+        if unit not in self._newest:
+            return None
+        block = self._decoded(unit)
+        return self._of_axis(unit, block) if isinstance(block, AxisBlock) else self._of_spindle(unit, block)
+
+    def _of_axis(self, unit: str, block: AxisBlock) -> LastValues:
+        axis, velocities = self._machine.axes[unit], block.actual_velocity
+        position, velocity = block.actual_position[-1], velocities[-1]
+        acceleration = (velocity - velocities[-2]) / self._cycle_time if block.count > 1 else block.set_acceleration[-1]
+        braking = braking_deceleration(axis, in_step=self._is_coupled(unit))
+        profile = axis_stop(axis, position, velocity, acceleration, braking)
+        cycle = block.first_cycle + block.count - 1
+        return LastValues(cycle, position, velocity, profile, braking, block.set_velocity[-1] != 0.0)
+
+    def _of_spindle(self, unit: str, block: SpindleBlock) -> LastValues:
+        gear = self._machine.spindles[unit].gears[block.gear[-1]]
+        position, velocity = block.actual_position_deg[-1], block.actual_speed_rpm[-1] * DEG_S_PER_RPM
+        braking = braking_deceleration(gear, in_step=self._is_coupled(unit))
+        profile = spindle_stop(position, velocity, braking)
+        cycle = block.first_cycle + block.count - 1
+        return LastValues(cycle, position, velocity, profile, braking, block.set_speed_rpm[-1] != 0.0)
+
+    def _is_coupled(self, unit: str) -> bool:
+        """It has a master or slaves; they stop on their own ramps, and so does its drive: they stay together."""
+        masters = {name: self._decoded(name).master for name in self._newest}
+        return bool(masters.get(unit)) or unit in masters.values()
+
+    def _decoded(self, unit: str) -> AxisBlock | SpindleBlock:
+        block: AxisBlock | SpindleBlock = codec_of(self._classes[unit]).decode(self._newest[unit])
+        return block
+
+    def _name(self, unit: str) -> str:
+        return f"axis {unit}" if unit in self._machine.axes else f"spindle {unit}"
+
+    def _length_unit(self, unit: str) -> str:
+        return "mm" if unit in self._machine.axes and not self._machine.axes[unit].rotary else "deg"

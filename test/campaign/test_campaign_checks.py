@@ -1,0 +1,124 @@
+"""The checks of the campaign find what they are to find, in recordings that were made for it."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from campaign import kills, load, motion
+from campaign.cases import Link
+from campaign.kills import HOLD, KILL, TERM, Fault, Row
+from campaign.table import summary, table
+from cnc_ptp.parameters import read_machine
+from cnc_ptp.protocol.blocks import Event, Severity
+from cnc_ptp.recording.reader import DriveStop, Recorded
+
+MACHINE = read_machine(str(Path(__file__).parents[2] / "config" / "gantry.yaml"))
+CYCLE = 1e-3
+BRAKING = 5000.0
+"""mm/s²"""
+
+
+def ramp(velocity=100.0, cycles=200):
+    """Velocities of a stop in the last cycles."""
+    return np.maximum(0.0, np.minimum(velocity, BRAKING * CYCLE * np.arange(cycles - 1, -1, -1.0)))
+
+
+def rows(velocities, first=0):
+    names = ("set_position", "set_velocity", "actual_position", "actual_velocity")
+    states = np.zeros(len(velocities), dtype=[("cycle", np.uint64), *((name, float) for name in names)])
+    states["cycle"] = first + np.arange(len(velocities))
+    states["set_velocity"] = states["actual_velocity"] = velocities
+    states["set_position"] = states["actual_position"] = np.cumsum(velocities) * CYCLE
+    return states
+
+
+def recorded(x, y=None, stops=()):
+    made = Recorded(Path("made"))
+    made.states = {"/x/state": x, "/y/state": rows(ramp()) if y is None else y}
+    made.drive_stops = list(stops)
+    return made
+
+
+def found(made, *, ended=True):
+    return list(motion.problems(made, MACHINE, ended=ended))
+
+
+def test_a_stop_on_a_ramp_is_in_order():
+    assert found(recorded(rows(ramp()))) == []
+
+
+def test_what_still_moves_at_the_end_is_found():
+    moving = rows(np.full(100, 50.0))
+    assert found(recorded(moving)) == ["x: still moves at the end with 50.000"]
+    assert found(recorded(moving), ended=False) == []
+
+
+def test_a_drive_that_has_braked_on_its_own_goes_on_from_the_last_block():
+    moving = rows(np.full(100, 50.0))
+    velocities = ramp(50.0, 10)
+    positions = moving["actual_position"][-1] + np.cumsum(velocities) * CYCLE
+    assert found(recorded(moving, stops=[DriveStop("x", 100, positions, velocities)])) == []
+    late = DriveStop("x", 110, positions + 5.0, velocities + 1.0)
+    assert found(recorded(moving, stops=[late])) == [
+        "x: the drive stops in cycle 110, the last setpoint is of 99",
+        "x: its drive still moves at the end",
+    ]
+
+
+def test_steps_jumps_and_gaps_are_found():
+    step = ramp()
+    step[100] = 300.0
+    assert [text.partition(" above")[0] for text in found(recorded(rows(step)))] == [
+        "x: set acceleration 200000.0",
+        "x: actual acceleration 200000.0",
+    ]
+    jump = rows(ramp())
+    jump["actual_position"][50:] += 20.0
+    assert found(recorded(jump)) == ["x: its position jumps (20100.0 per second at 49)"]
+    gap = rows(ramp())
+    assert found(recorded(gap[gap["cycle"] != 30])) == ["x: cycles are missing"]
+
+
+def test_a_pair_that_comes_apart_is_measured():
+    """Two blocks of 100 mm/s are 2 mm."""
+    together, apart = rows(ramp()), rows(ramp())
+    assert motion.torn(recorded(together, apart), Link("x", "y", 1.0), MACHINE) == (0.0, pytest.approx(2.0))
+    short = together[:150]
+    stop = DriveStop("x", 150, np.full(3, short["actual_position"][-1]), np.zeros(3))
+    distance, permitted = motion.torn(recorded(short, apart, [stop]), Link("x", "y", 1.0), MACHINE)
+    assert distance == pytest.approx(apart["actual_position"][-1] - short["actual_position"][-1])
+    assert distance > permitted == pytest.approx(2.0)
+
+
+def test_a_retract_that_did_not_take_place_is_found():
+    made = recorded(rows(ramp()))
+    text = (
+        "channel channel: no block of 's' came within the watchdog time; axis X retracts by 5 mm while the path follows"
+    )
+    made.events = [Event(100, "channel", Severity.ERROR, 26101, f"{text} spindle s")]
+    way = made.states["/x/state"]["set_position"][-1] - made.states["/x/state"]["set_position"][100]
+    assert list(kills.not_retracted(made)) == [f"X has retracted by {way:.3f} mm instead of 5 mm"]
+    made.states["/x/state"]["set_position"][101:] = made.states["/x/state"]["set_position"][100] + 5.0
+    assert list(kills.not_retracted(made)) == []
+
+
+def row(signal, outcome, *problems):
+    return Row(Fault("ptp", "x", signal, 0.0, 1.0), outcome, [*problems], own_stops={"x": 20})
+
+
+def test_the_table_counts_what_happened():
+    made = [row(KILL, "stopped"), row(KILL, "stopped", "orphans: x"), row(HOLD, "survived"), row(TERM, "over")]
+    assert summary(made) == ("3 faults (1 came after the end of their run): 2 stops, 1 runs that continued, 1 problems")
+    cells = [list(column.cells) for column in table(made).columns]
+    assert cells == [["ptp"], ["1 / 2"], ["0 / 0"], ["1 / 1"], ["3"], ["0.0"]]
+    assert made[0].as_json()["good"] and not made[1].as_json()["good"]
+
+
+def test_growth_is_counted_from_the_settled_part_on():
+    samples = [{"x": (memory, 10, 3)} for memory in (50.0, 60.0, 60.2, 60.4, 60.6)]
+    row = load.LoadRow("soak")
+    load.grown(row, samples)
+    assert row.problems == [] and row.figures == {"x: MB more": pytest.approx(0.6)}
+    load.grown(row, [{"x": (60.0, 10, 3)}, {"x": (62.0, 11, 4)}])
+    assert row.problems == ["x has grown by 2.00 MB", "x has 1 more file handles, 1 more threads"]

@@ -1,0 +1,39 @@
+"""A short campaign: a few faults of each kind, at moments that a seed gives; `make campaign` is the long one."""
+
+from pathlib import Path
+
+import pytest
+
+from campaign import kills, load
+from campaign.cases import CASES
+from campaign.kills import HOLD, KILL, TERM, Fault
+
+FAULTS = (
+    Fault("program", "y", KILL, 0.0, 2.345),
+    Fault("ptp", "c", TERM, 0.0, 1.234),
+    Fault("coupled", "x", KILL, 0.0, 2.123),
+    Fault("gantry", "y", HOLD, 0.6, 1.789),
+    Fault("tapping", "supervisor", KILL, 0.0, 2.5),
+)
+"""Other kinds are in test_kill.py, test_drive_watch.py and test_slaves.py."""
+
+
+@pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: f"{fault.case}-{fault.node}-{fault.signal}")
+def test_a_fault(fault: Fault, tmp_path: Path, ros_domain: int) -> None:
+    row = kills.run(fault, tmp_path, domain=ros_domain)
+    assert row.problems == [] and row.outcome == "stopped"
+    assert row.cycles > 500
+
+
+def test_a_suspended_graph_goes_on(tmp_path: Path, ros_domain: int) -> None:
+    row = load.suspended(tmp_path, ros_domain)
+    assert row.problems == [] and row.figures["cycles"] > 4000
+
+
+def test_a_seed_gives_the_same_faults_of_every_case() -> None:
+    first, again, other = (list(zip(range(200), kills.faults(seed), strict=False)) for seed in (5, 5, 6))
+    assert first == again != other
+    faults = [fault for _, fault in first]
+    assert {fault.case for fault in faults} == {case.name for case in CASES}
+    assert {fault.signal for fault in faults} == {KILL, TERM, HOLD}
+    assert all((fault.hold > 0.0) == (fault.signal == HOLD) and fault.hold <= 10.0 for fault in faults)
