@@ -30,7 +30,19 @@ MOST_FINDINGS = 20
 SHOWN = 300
 """Characters of an input that are shown."""
 
-Make = Callable[[random.Random], Any]
+
+class Draw(random.Random):
+    """The random numbers of one input, and its number."""
+
+    def __init__(self, kind: str, seed: int, number: int) -> None:
+        super().__init__(f"{kind} {seed} {number}")
+        self.number = number
+
+    def __new__(cls, kind: str, seed: int, number: int) -> Draw:
+        return super().__new__(cls, 0)
+
+
+Make = Callable[[Draw], Any]
 Call = Callable[[Any], None]
 
 
@@ -87,7 +99,7 @@ class Broken(AssertionError):
 
 def attempt(kind: Kind, target: Target, seed: int, number: int, folder: Path) -> tuple[bool, Finding | None]:
     """One input: whether it was refused, and what is wrong about how it was taken."""
-    given = target.make(random.Random(f"{kind.name} {seed} {number}"))
+    given = target.make(Draw(kind.name, seed, number))
     refused, reason = False, ""
     with guarded(folder) as outside:
         try:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from pathlib import Path
 
-from bench.fuzzing import programs, texts
+from bench.fuzzing import command_line, messages, programs, recordings, texts, web_messages
 from bench.fuzzing.engine import Kind, Target
 
 
@@ -27,5 +27,15 @@ KINDS = {
         Kind("sweep-journal", texts.journals, 300),
         Kind("sweep-table", texts.tables, 200),
         Kind("users", texts.users, 300),
+        Kind("mcap-every", recordings.every_byte, 150),
+        *(Kind(name, prepare, 200) for name, prepare in recordings.kinds().items()),
+        Kind("checkpoint", recordings.checkpoints, 300),
+        Kind("block", messages.blocks, 500),
+        Kind("topic", messages.topics, 500),
+        Kind("command", messages.commands, 300),
+        Kind("function-block", messages.function_blocks, 200),
+        Kind("command-line", command_line.command_lines, 200),
+        Kind("web", web_messages.socket_messages, 300),
+        Kind("http", web_messages.http_requests, 300),
     )
 }
