@@ -20,7 +20,7 @@ HEAD = f"{'kind':<15} {'seed':>6} {'count':>10} {'refused':>10} {'undocumented':
 
 
 def row(verdict: Verdict) -> str:
-    numbers = f"{verdict.count:>10,} {verdict.refused:>10,} {len(verdict.findings):>12} {verdict.slowest:>10.2f}"
+    numbers = f"{verdict.count:>10,} {verdict.refused:>10,} {verdict.undocumented:>12} {verdict.slowest:>10.2f}"
     return f"{verdict.kind:<15} {verdict.seed:>6} {numbers} {verdict.growth:>11,} {verdict.seconds:>6.0f}"
 
 
@@ -28,7 +28,9 @@ def row(verdict: Verdict) -> str:
 @click.argument("kinds", nargs=-1, type=click.Choice([*KINDS]), metavar="[KIND]...")
 @click.option("--count", type=click.IntRange(1), default=1000, show_default=True, help="Inputs of each kind.")
 @click.option("--seed", type=int, default=1, show_default=True, help="Of all random numbers.")
-@click.option("--first", type=click.IntRange(0), default=0, help="Number of the first input: --first N --count 1 is one.")
+@click.option(
+    "--first", type=click.IntRange(0), default=0, help="Number of the first input: --first N --count 1 is one."
+)
 @click.option("--minutes", type=float, default=0.0, help="End each kind after so many minutes, whatever --count says.")
 def main(kinds: Sequence[str], count: int, seed: int, first: int, minutes: float) -> None:
     """Tries mutated inputs of each KIND, all without one. Status 1 where one was not taken as documented."""

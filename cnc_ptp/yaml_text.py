@@ -10,6 +10,18 @@ PARSER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 WRITER: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
 
 
-def load(text: str) -> Any:
+UNFIT = (ValueError, TypeError, AttributeError, LookupError, RecursionError)
+"""What PyYAML raises besides on values that do not fit their form or tag: 2001-13-45, !!bool x, lists in lists."""
+
+
+def load(text: str, parser: Any = PARSER) -> Any:
     """The content of a YAML text. Raises yaml.YAMLError."""
-    return yaml.load(text, Loader=PARSER)
+    try:
+        return yaml.load(text, Loader=parser)
+    except UNFIT as error:
+        raise unfit(error) from None
+
+
+def unfit(error: Exception) -> yaml.YAMLError:
+    """One of `UNFIT` as the error that a wrong text is."""
+    return yaml.constructor.ConstructorError(None, None, f"a value cannot be read: {error}")

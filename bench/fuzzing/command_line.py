@@ -28,8 +28,37 @@ STATUS = (0, 1, 2)
 NUMBERS = ("0", "1", "2", "0.01", "-1", "1e-9", "100", "1e9", "nan", "inf", "1e999", "x", "", "99999999999999999999")
 WORDS = ("x", "y", "s", "channel", "plc", "x/set_velocity", "/x/state", "/events", "set_position", "following_error", "x.getriebe.0.kv=1000",
          "x.getriebe.0.kv=nan", "G1", "70349", "P-ERR-23004", "x=axis", "friction", "100:5000", "x.set_velocity != 0", "500MB", "1s", "XY", "=", ",")  # fmt: skip
-OUTPUTS = ("out.html", "out.svg", "out.mcap", "out.csv", "out.parquet", "out.npz", "out.yaml", "out.json", "out.xml", "out", "parts", "m.yaml", "no/out.html")
-FILES = ("m.yaml", "mill.yaml", "p.nc", "bad.nc", "s.yaml", "cam.csv", "curve.csv", "r.mcap", "cut.mcap", "lists", "empty", "binary", "none.yaml", ".")
+OUTPUTS = (
+    "out.html",
+    "out.svg",
+    "out.mcap",
+    "out.csv",
+    "out.parquet",
+    "out.npz",
+    "out.yaml",
+    "out.json",
+    "out.xml",
+    "out",
+    "parts",
+    "m.yaml",
+    "no/out.html",
+)
+FILES = (
+    "m.yaml",
+    "mill.yaml",
+    "p.nc",
+    "bad.nc",
+    "s.yaml",
+    "cam.csv",
+    "curve.csv",
+    "r.mcap",
+    "cut.mcap",
+    "lists",
+    "empty",
+    "binary",
+    "none.yaml",
+    ".",
+)
 
 
 class Known(NamedTuple):
@@ -100,7 +129,10 @@ def line(known: Known, draw: random.Random) -> list[str]:
             if not getattr(parameter, "is_flag", False):
                 words += [value_of(parameter, draw) for _ in range(max(1, parameter.nargs))]
     if draw.random() < 0.05:
-        words.insert(draw.randint(0, len(words)), draw.choice((*VALUES, "--nothing", "--ros-args", "-r", "__ns:=/x")).replace("\x00", ""))
+        words.insert(
+            draw.randint(0, len(words)),
+            draw.choice((*VALUES, "--nothing", "--ros-args", "-r", "__ns:=/x")).replace("\x00", ""),
+        )
     if known.words == ("simulate",) and "--duration" not in words:
         words += ["--duration", "0.05"]
     return words
@@ -138,7 +170,9 @@ def command_lines(folder: Path) -> Target:
 
 def carried_out(words: list[str]) -> Any:
     """The result of a command; None for one that was only read."""
-    reader = next((each for each in known(cli.main) if each.is_read_only and words[: len(each.words)] == [*each.words]), None)
+    reader = next(
+        (each for each in known(cli.main) if each.is_read_only and words[: len(each.words)] == [*each.words]), None
+    )
     if reader is None:
         return CliRunner().invoke(cli.main, words)
     with reader.command.make_context(words[0], words[len(reader.words) :], obj=[]):
@@ -150,7 +184,10 @@ def folder_changed(folder: Path, before: set[str]) -> bool:
     for path in folder.iterdir():
         if path.name not in before:
             remove(path)
-    return before != {path.name for path in folder.iterdir()} or (folder / "m.yaml").stat().st_size != (folder / "mill.yaml").stat().st_size
+    return (
+        before != {path.name for path in folder.iterdir()}
+        or (folder / "m.yaml").stat().st_size != (folder / "mill.yaml").stat().st_size
+    )
 
 
 def remove(path: Path) -> None:

@@ -26,7 +26,8 @@ from cnc_ptp.errors import CncError
 LONGEST = 60.0
 """Seconds after which an input counts as one that hangs; the slowest ones take a few."""
 MOST_FINDINGS = 20
-"""After so many of a kind it ends: they are the same few."""
+"""After so many different ones of a kind it ends."""
+PACKAGE = "/cnc_ptp/"
 SHOWN = 300
 """Characters of an input that are shown."""
 
@@ -46,11 +47,16 @@ Make = Callable[[Draw], Any]
 Call = Callable[[Any], None]
 
 
+def nothing() -> None:
+    """There is nothing to close."""
+
+
 class Target(NamedTuple):
-    """How an input is made, and what takes it."""
+    """How an input is made, and what takes it; `close`: at the end."""
 
     make: Make
     call: Call
+    close: Callable[[], None] = nothing
 
 
 class Kind(NamedTuple):
@@ -70,18 +76,24 @@ class Finding(NamedTuple):
     input: str
     reason: str
 
+    @property
+    def place(self) -> str:
+        """Findings of one place are probably one defect."""
+        return self.reason.partition(": ")[0]
+
     def __str__(self) -> str:
         return f"{self.kind} seed {self.seed} number {self.number}: {self.reason}\n  input: {self.input}"
 
 
 @dataclass
 class Verdict:
-    """What has become of the inputs of a kind. `growth`: KiB in the second half of them."""
+    """What has become of the inputs of a kind. `findings`: one of each place; `growth`: KiB in the second half of them."""
 
     kind: str
     seed: int
     count: int = 0
     refused: int = 0
+    undocumented: int = 0
     findings: list[Finding] = field(default_factory=list)
     slowest: float = 0.0
     slowest_number: int = 0
@@ -121,7 +133,16 @@ def objection(error: Exception) -> str:
         return "" if error.reason.strip() else f"error {error.number} has no text"
     if isinstance(error, (click.ClickException, click.exceptions.Exit, click.Abort)):
         return ""
-    return "".join(traceback.format_exception(error)).strip()
+    return f"{type(error).__name__} at {place_of(error)}: {str(error)[:SHOWN]}"
+
+
+def place_of(error: BaseException) -> str:
+    """The innermost places in this package where it came from."""
+    frames = [each for each in traceback.extract_tb(error.__traceback__) if PACKAGE in each.filename]
+    return (
+        " > ".join(f"{each.filename.partition(PACKAGE)[2]}:{each.lineno}" for each in frames[-3:])
+        or "no place of cnc_ptp"
+    )
 
 
 def shown(given: Any) -> str:
@@ -159,11 +180,14 @@ def run(kind: Kind, seed: int, count: int, folder: Path, *, first: int = 0, seco
             verdict.slowest, verdict.slowest_number = now - last, number
         last = now
         if finding is not None:
-            verdict.findings.append(finding)
+            verdict.undocumented += 1
+            if finding.place not in {known.place for known in verdict.findings}:
+                verdict.findings.append(finding)
         over_half = verdict.count >= count / 2 or (seconds and now - begin > seconds / 2)
         half = half or (over_half and largest_memory()) or 0
         if len(verdict.findings) >= MOST_FINDINGS or (seconds and now - begin > seconds):
             break
+    target.close()
     verdict.growth, verdict.seconds = largest_memory() - (half or largest_memory()), time.monotonic() - begin
     return verdict
 

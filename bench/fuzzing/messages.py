@@ -32,6 +32,7 @@ from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.protocol.blocks import Command, CycleBlock
 from cnc_ptp.protocol.commands import COMMANDS, Argument
 from cnc_ptp.protocol.unit import PLC, Unit
+from cnc_ptp.spindle.spindle_unit import SpindleUnit
 from cnc_ptp.state.machine_state import StateStore
 from cnc_ptp.wire.block_codec import codec_of, encode_block, has_plain_header, head_of
 from cnc_ptp.wire.stamps import Stamps
@@ -69,6 +70,8 @@ class Running:
         for name, unit in self.units.items():
             unit.command(Command(name, "?", {}), self.machine.next_cycle)
             unit.take_events(), unit.take_records()
+            if isinstance(unit, SpindleUnit):
+                unit._refused.clear()  # what it tells channels of refusals
         return self.store.encode(self.machine, with_plc=True)
 
     @property
@@ -79,6 +82,7 @@ class Running:
 
 
 # commands and services
+
 
 class Given(NamedTuple):
     """A command with its arguments; `blocks`: how many are computed then."""
@@ -128,7 +132,9 @@ def commands(_folder: Path) -> Target:
         before = here.state()
         record = unit.command(Command(given.unit, given.command, arguments), here.machine.next_cycle)
         if not record.accepted and here.state() != before:
-            raise Broken(f"{given.unit}: {given.command} was refused ({record.error_id} {record.message[:200]}) and has changed it")
+            raise Broken(
+                f"{given.unit}: {given.command} was refused ({record.error_id} {record.message[:200]}) and has changed it"
+            )
         error = None if record.accepted else CncError(record.error_id, record.message)
         json.loads(record.arguments_json)
         codec_safe(here.tick(given.blocks) if given.blocks else {})
@@ -151,7 +157,22 @@ def drawn(argument: Argument, units: list[str], draw: random.Random) -> Any:
     if argument.choices:
         return draw.choice((*argument.choices, "", "x"))
     if argument.kind == "number":
-        return draw.choice((0.0, 1.0, -1.0, 10.0, 100.0, 1e-9, 1e9, draw.uniform(-500, 500), draw.uniform(0, 200), math.nan, math.inf, 1e300))
+        return draw.choice(
+            (
+                0.0,
+                1.0,
+                -1.0,
+                10.0,
+                100.0,
+                1e-9,
+                1e9,
+                draw.uniform(-500, 500),
+                draw.uniform(0, 200),
+                math.nan,
+                math.inf,
+                1e300,
+            )
+        )
     if argument.kind == "integer":
         return draw.choice((0, 1, 2, 3, 7, 54, 255, 2**32 - 1, 2**63, -1))
     if argument.kind == "switch":
@@ -160,7 +181,19 @@ def drawn(argument: Argument, units: list[str], draw: random.Random) -> Any:
         return draw.choice(ROWS) if draw.random() < 0.8 else [wild(draw) for _ in range(draw.randrange(4))]
     if argument.kind == "files":
         return {draw.choice(("a.nc", "", "../b.nc")): draw.choice(("M29", "", "x" * HUGE))}
-    return draw.choice((*units, "G1 X10 F500\nM30", "M3 S500\nG4 X1\nM30", "G0 Y5", "getriebe.0.kv", "S-0-0047", "part.nc", "", "x" * 300))
+    return draw.choice(
+        (
+            *units,
+            "G1 X10 F500\nM30",
+            "M3 S500\nG4 X1\nM30",
+            "G0 Y5",
+            "getriebe.0.kv",
+            "S-0-0047",
+            "part.nc",
+            "",
+            "x" * 300,
+        )
+    )
 
 
 ROWS: tuple[list[Any], ...] = (
@@ -204,7 +237,11 @@ def function_blocks(_folder: Path) -> Target:
         unit, kind = draw.choice([(unit, kind) for unit, kind in running.kinds.items() if kind in BLOCK_TYPES])
         name = draw.choice([*BLOCK_TYPES[kind], "MC_Nothing", ""])
         chosen = draw.sample([*fields], k=draw.randint(0, 8))
-        return unit, name, {field: drawn(Argument(OF_FIELD.get(fields[field], "rows")), [*running.kinds], draw) for field in chosen}
+        return (
+            unit,
+            name,
+            {field: drawn(Argument(OF_FIELD.get(fields[field], "rows")), [*running.kinds], draw) for field in chosen},
+        )
 
     def call(given: tuple[str, str, dict[str, Any]]) -> None:
         running.inputs += 1
@@ -225,10 +262,19 @@ def function_blocks(_folder: Path) -> Target:
     return Target(make, call)
 
 
-OF_FIELD = {"double": "number", "boolean": "switch", "string": "text", "int32": "integer", "uint32": "integer", "uint8": "integer", "int64": "integer"}
+OF_FIELD = {
+    "double": "number",
+    "boolean": "switch",
+    "string": "text",
+    "int32": "integer",
+    "uint32": "integer",
+    "uint8": "integer",
+    "int64": "integer",
+}
 
 
 # bytes
+
 
 def blocks(_folder: Path) -> Target:
     """Blocks and ticks as they come over a topic or lie in a recording."""
@@ -313,10 +359,31 @@ def fill(message: Any, draw: random.Random) -> None:
         elif of == "boolean":
             setattr(message, name, draw.random() < 0.6)
         elif of in ("double", "float"):
-            setattr(message, name, draw.choice((0.0, 1.0, 50.0, 100.0, -1.0, 1000.0, math.nan, math.inf, -math.inf, 1e300 if of == "double" else 1e38)))
+            setattr(
+                message,
+                name,
+                draw.choice(
+                    (
+                        0.0,
+                        1.0,
+                        50.0,
+                        100.0,
+                        -1.0,
+                        1000.0,
+                        math.nan,
+                        math.inf,
+                        -math.inf,
+                        1e300 if of == "double" else 1e38,
+                    )
+                ),
+            )
         elif of.startswith(("uint", "int")) and "[" not in of:
             bits, signed = int(of.removeprefix("u").removeprefix("int")), of.startswith("int")
             largest = 2 ** (bits - signed) - 1
-            setattr(message, name, draw.choice((0, 1, 2, 3, min(largest, 1000), draw.randrange(1, 40), largest, largest - 1, -1 if signed else 0)))
-
-
+            setattr(
+                message,
+                name,
+                draw.choice(
+                    (0, 1, 2, 3, min(largest, 1000), draw.randrange(1, 40), largest, largest - 1, -1 if signed else 0)
+                ),
+            )

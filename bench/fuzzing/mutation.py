@@ -11,6 +11,8 @@ from typing import Any, Final
 
 HUGE: Final = 100_000
 """Characters of a text that is too long for anything."""
+LAUGHS: Final = "[&l0 [x, x], " + ", ".join(f"&l{n} [{', '.join([f'*l{n - 1}'] * 9)}]" for n in range(1, 12)) + "]"
+"""A billion values in a few words: lists of lists that are the same."""
 VALUES: Final = (
     *("", "~", "null", "true", "false", "on", "off", "0", "-0", "-1", "1", "2", "0.5", "-0.0", "1e-320", "1e308", "-1e308"),
     *("1e999", ".nan", ".inf", "-.inf", "nan", "inf", "-inf", "NaN", "Infinity", "9" * 30, "-" + "9" * 400, "1" * 5000),
@@ -20,7 +22,7 @@ VALUES: Final = (
     *("2001-13-45", "2001-01-01", "!!binary x", "!!int x", "!!int 1.5", "!!float x", "!!bool x", "!!timestamp x", "!!null x"),
     *("!!python/object:os.system x", "!!set {a}", "!!omap [1]", "!!pairs [1]", "!foo x", "&a [*a]", "*a", "&b 1", "<<", "? a"),
     *("|\n  x", ">", "%TAG", "---", "...", "- a", "#", ",", ":", "=", "é", "\u2028", "\ufeff", "\x00", "\x7f", "\x1b[31m"),
-    *("x", "y", "X", "S", "channel", "plc", "..", "/", "../../etc/passwd", "/dev/zero", "x" * 300),
+    *(LAUGHS, "x", "y", "X", "S", "channel", "plc", "..", "/", "../../etc/passwd", "/dev/zero", "x" * 300),
 )  # fmt: skip
 """What stands for a value or in the middle of a text."""
 WILD: Final[tuple[Any, ...]] = (
@@ -126,9 +128,13 @@ def number_bytes(draw: random.Random) -> bytes:
     """A number at the end of its range."""
     code = draw.choice("IIQQHBdf")
     if code in "df":
-        return struct.pack(f"<{code}", draw.choice((math.nan, math.inf, -math.inf, 0.0, -1.0, 1e300 if code == "d" else 1e38)))
+        return struct.pack(
+            f"<{code}", draw.choice((math.nan, math.inf, -math.inf, 0.0, -1.0, 1e300 if code == "d" else 1e38))
+        )
     largest = 256 ** struct.calcsize(code) - 1
-    return struct.pack(f"<{code}", draw.choice((0, 1, 2, largest, largest // 2, largest // 2 + 1, largest - 7, min(largest, 1 << 28))))
+    return struct.pack(
+        f"<{code}", draw.choice((0, 1, 2, largest, largest // 2, largest // 2 + 1, largest - 7, min(largest, 1 << 28)))
+    )
 
 
 def wild(draw: random.Random) -> Any:

@@ -33,7 +33,7 @@ from cnc_ptp.recording.recovery import recover
 from cnc_ptp.recording.run_inputs import RunInputs
 from cnc_ptp.state.machine_state import HEAD, StateStore, check_sum, read
 
-MACHINE = "/machine: {ros__parameters: {axes: [x], block_cycles: 5}}\n/x: {ros__parameters: {getriebe: [{kv: 3000}]}}\n"
+MACHINE = "/machine: {ros__parameters: {axes: [x], block_cycles: 5}}\n/x: {ros__parameters: {getriebe.0.kv: 3000}}\n"
 CYCLES = 30
 LONGEST_REPLAY = 20_000
 """Cycles; a recording of 30 cycles in which one number has changed must not take longer."""
@@ -59,11 +59,15 @@ def uncompressed(data: bytes) -> bytes:
     writer.start(reader.get_header().profile, "fuzz")
     schemas = {id: register(writer, schema) for id, schema in summary.schemas.items()}
     channels = {
-        id: writer.register_channel(channel.topic, channel.message_encoding, schemas[channel.schema_id], channel.metadata)
+        id: writer.register_channel(
+            channel.topic, channel.message_encoding, schemas[channel.schema_id], channel.metadata
+        )
         for id, channel in summary.channels.items()
     }
     for attachment in reader.iter_attachments():
-        writer.add_attachment(attachment.create_time, attachment.log_time, attachment.name, attachment.media_type, attachment.data)
+        writer.add_attachment(
+            attachment.create_time, attachment.log_time, attachment.name, attachment.media_type, attachment.data
+        )
     for metadata in reader.iter_metadata():
         writer.add_metadata(metadata.name, metadata.metadata)
     for _, channel, message in reader.iter_messages():
@@ -189,7 +193,12 @@ READERS = {"read": read_all, "open": open_all, "recover": recover_all, "report":
 def checkpoints(_folder: Path) -> Target:
     """States of a machine: damaged bytes, and forged ones whose check sum is right."""
     parameters = load_machine(MACHINE, "m.yaml")
-    run = OfflineRun(parameters, build_units(parameters, scenario=[Entry(0.0, Command("x", "move_absolute", {"target": 10.0, "velocity": 50.0}))]))
+    run = OfflineRun(
+        parameters,
+        build_units(
+            parameters, scenario=[Entry(0.0, Command("x", "move_absolute", {"target": 10.0, "velocity": 50.0}))]
+        ),
+    )
     for _ in range(3):
         run.step()
     state = StateStore(parameters).encode(run.machine, with_plc=True)
@@ -225,7 +234,9 @@ def forged(content: str, draw: random.Random) -> str:
             place = place[draw.choice(inner)]
         index, kind = draw.randrange(len(place)), draw.randrange(4)
         if kind == 0:
-            place[index] = draw.choice((None, True, -1, 0, 1, 7, 10**9, 0.5, "x", "machine", [], [0], [[]], {}, {"a": 1}))
+            place[index] = draw.choice(
+                (None, True, -1, 0, 1, 7, 10**9, 0.5, "x", "machine", [], [0], [[]], {}, {"a": 1})
+            )
         elif kind == 1:
             del place[index]
         elif kind == 2:
@@ -244,5 +255,3 @@ def void(_value: object) -> None:
 
 def kinds() -> dict[str, Callable[[Path], Target]]:
     return {f"mcap-{name}": partial(recordings, reader) for name, reader in READERS.items()}
-
-

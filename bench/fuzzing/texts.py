@@ -46,8 +46,8 @@ def machine(file: Path = MILL) -> MachineParameters:
 SMALL_MACHINE = """\
 /machine: {ros__parameters: {channels: [ch], axes: [x, "y", c], spindles: [s]}}
 /c: {ros__parameters: {kenngr: {achs_typ: ACHSTYP_ROTATOR}}}
-/s: {ros__parameters: {kenngr.achs_typ: ACHSTYP_SPINDEL, getriebe: [{kv: 3000}]}}
-/ch: {ros__parameters: {nullp_data: o.yaml, pzv_data: p.yaml, werkz_data: t.yaml, spdl_anzahl: 1, spindel: [{bezeichnung: S}]}}
+/s: {ros__parameters: {kopf.achs_nr: 4, kenngr.achs_typ: ACHSTYP_SPINDEL, getriebe: {"0": {kv: 3000}}}}
+/ch: {ros__parameters: {nullp_data: o.yaml, pzv_data: p.yaml, werkz_data: t.yaml, spdl_anzahl: 1, spindel: {"0": {bezeichnung: S, log_achs_nr: 4}}}}
 """
 OFFSETS = """\
 G54: {name: left vice, X: 100.0001, Y: -50.5}
@@ -61,7 +61,7 @@ CLAMPS = "0: {name: table, X: 1.5}\n149: {C: -90}\n"
 TOOLS = """\
 5: {name: turning tool, type: turning, orientation: 3, offsets: {X: 20.5, Y: 41}, wear: {X: -0.02}}
 6: {type: turning, d: {6: {orientation: 3, offsets: {X: 40}}, 16: {orientation: 4, offsets: {X: 37}}}}
-7: {length: 75, radius: 5, spindle: s, min_speed: 100, max_speed: 5000, valid: true, fixed: false}
+7: {length: 75, radius: 5, spindle: 2, min_speed: 100, max_speed: 5000, valid: true, fixed: false}
 """
 
 
@@ -97,7 +97,8 @@ def scenarios(_folder: Path) -> Target:
     texts = [text for text in yaml_files().values() if text.lstrip("#").strip() and " do: " in text]
     texts += [SCENARIO]
     return Target(
-        partial(mutated_yaml, texts), lambda text: void(parse_scenario(text, "s.yaml", kinds, lambda *_: CAM + "\nM30\n"))
+        partial(mutated_yaml, texts),
+        lambda text: void(parse_scenario(text, "s.yaml", kinds, lambda what, _path: FILES.get(what, "M30\n"))),
     )
 
 
@@ -117,6 +118,7 @@ SCENARIO = """\
 
 
 # lists
+
 
 def lists(_folder: Path) -> Target:
     """A folder of lists, one of which is changed: its bytes, or its lines; or its name."""
@@ -176,13 +178,32 @@ def csv_tables(_folder: Path) -> Target:
     return Target(make, call)
 
 
+FILES = {"cam file": CAM, "setpoint file": SETPOINTS}
+"""What scenarios name."""
+
+
 # sweeps
 
 VARIATIONS = ("x.getriebe.0.kv=2000:8000:13", "x.getriebe.0.kv=1000,2000,3000", "s.getriebe.0.kv=normal(3000,100)",
               "x.getriebe.0.kv=log:100:1000:5", "x.getriebe.0.kv=500:9000")  # fmt: skip
 GOALS = ("max(following_error.x)", "max:min(set_velocity.x)", "rms(following_error.x + following_error.y) / 2", "program_time",
          "max(abs(set_acceleration.x)) ** 2 - last(set_position.x)")  # fmt: skip
-SWEEP_WORDS = (*VALUES, ":", ",", "(", ")", "**", "9**9**9", ".", "__import__('os')", "lambda: 0", "max(", "abs(", "x.", "/0")
+SWEEP_WORDS = (
+    *VALUES,
+    ":",
+    ",",
+    "(",
+    ")",
+    "**",
+    "9**9**9",
+    ".",
+    "__import__('os')",
+    "lambda: 0",
+    "max(",
+    "abs(",
+    "x.",
+    "/0",
+)
 
 
 def sweeps(_folder: Path) -> Target:
@@ -270,7 +291,11 @@ def users(folder: Path) -> Target:
     file = folder / "users.yaml"
 
     def make(draw: random.Random) -> bytes:
-        return mutated_bytes(USERS.encode(), draw) if draw.random() < 0.2 else mutated_yaml([USERS], draw).encode("utf-8", "surrogatepass")
+        return (
+            mutated_bytes(USERS.encode(), draw)
+            if draw.random() < 0.2
+            else mutated_yaml([USERS], draw).encode("utf-8", "surrogatepass")
+        )
 
     def call(content: bytes) -> None:
         file.write_bytes(content)

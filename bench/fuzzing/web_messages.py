@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import asyncio
 import json
+import logging
 import random
-import socket
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Awaitable, Mapping
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -33,7 +33,13 @@ MESSAGES: tuple[dict[str, Any], ...] = (
     {"type": "command", "id": 1, "unit": "x", "command": "move_absolute", "arguments": {"target": 10, "velocity": 20}},
     {"type": "command", "id": 1, "unit": "s", "command": "start", "arguments": {"direction": "cw", "speed_rpm": 500}},
     {"type": "command", "id": 1, "unit": "channel", "command": "mdi", "arguments": {"text": "G1 X1 F500"}},
-    {"type": "command", "id": 1, "unit": "channel", "command": "set_zero_offset", "arguments": {"index": 1, "axis": "x", "value": 1.5}},
+    {
+        "type": "command",
+        "id": 1,
+        "unit": "channel",
+        "command": "set_zero_offset",
+        "arguments": {"index": 1, "axis": "x", "value": 1.5},
+    },
     {"type": "command", "id": 1, "unit": "plc", "command": "acknowledge", "arguments": {"id": 1}},
     {"type": "command", "id": 1, "unit": "y", "command": "couple", "arguments": {"master": "x", "factor": 1.0}},
     {"type": "command", "id": 1, "unit": "x", "command": "reset", "arguments": {}},
@@ -55,7 +61,26 @@ MESSAGES: tuple[dict[str, Any], ...] = (
     {"type": "cancel_task", "id": 9, "task": 1},
     {"type": "accept", "id": 9, "task": 1, "file": "m2.yaml"},
 )
-WORDS = ("x", "y", "z", "s", "channel", "plc", "halt", "stop", "power", "home", "x.set_position", "part.nc", "../x.nc", "target", "velocity", "unit", "type", "file")
+WORDS = (
+    "x",
+    "y",
+    "z",
+    "s",
+    "channel",
+    "plc",
+    "halt",
+    "stop",
+    "power",
+    "home",
+    "x.set_position",
+    "part.nc",
+    "../x.nc",
+    "target",
+    "velocity",
+    "unit",
+    "type",
+    "file",
+)
 
 
 class Socket:
@@ -114,13 +139,10 @@ class Site:
         self.session = Session(self.hub, page, self.access, login, number=1)
         self.hub.add(self.session)
         self.hub.right.take(self.session, force=True)
-        self._begin_tasks = {*asyncio.all_tasks()}
-
-    async def _end(self) -> None:
-        await self.http.close()
 
     def close(self) -> None:
-        self.loop.run_until_complete(self._end())
+        self.hub.sessions.clear()  # the session has no socket that could be closed
+        self.loop.run_until_complete(self.http.close())
         self.loop.close()
 
     async def settle(self) -> None:
@@ -145,23 +167,30 @@ class Site:
         return [json.loads(each) for each in outgoing if isinstance(each, str)]
 
 
-def sites(folder: Path) -> Callable[[], Site]:
-    """The site for the next input."""
-    now: list[Site] = [Site(folder)]
+logging.getLogger("aiohttp.server").setLevel(logging.CRITICAL)
 
-    def next_one() -> Site:
-        now[0].handled += 1
-        if now[0].handled > FRESH or now[0].hub.face is None:
-            now[0].close()
-            now[0] = Site(folder)
-        return now[0]
 
-    return next_one
+class Sites:
+    """The site for the next input, one after another."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._now = Site(folder)
+
+    def next_one(self) -> Site:
+        self._now.handled += 1
+        if self._now.handled > FRESH or self._now.hub.face is None:
+            self._now.close()
+            self._now = Site(self._folder)
+        return self._now
+
+    def close(self) -> None:
+        self._now.close()
 
 
 def socket_messages(folder: Path) -> Target:
     """JSON of a page, with other fields, other values, or as no JSON at all."""
-    site = sites(folder)
+    sites = Sites(folder)
     texts = [json.dumps(message) for message in MESSAGES]
 
     def make(draw: random.Random) -> str:
@@ -178,7 +207,7 @@ def socket_messages(folder: Path) -> Target:
     def call(text: str) -> None:
         if begins_task(text):
             return
-        got = site().take(text)
+        got = sites.next_one().take(text)
         refused = [message for message in got if message.get("ok") is False or message["type"] == "error"]
         for message in refused:
             if message["number"] == SERVER_FAILED or entry(message["number"]) is None or not message["text"]:
@@ -186,7 +215,7 @@ def socket_messages(folder: Path) -> Target:
         if refused:
             raise CncError(refused[0]["number"], refused[0]["text"])
 
-    return Target(make, call)
+    return Target(make, call, sites.close)
 
 
 def begins_task(text: str) -> bool:
@@ -200,29 +229,76 @@ def begins_task(text: str) -> bool:
 PATHS = ("/", "/api/session", "/api/login", "/api/logout", "/ws", "/static/app.js", "/static/../server.py", "/api/programs", "/api/programs/part.nc",
          "/api/parameters?unit=x", "/api/curve?spindle=s", "/api/recorded?signals=x.set_position&from=0&to=1&points=5", "/api/snapshot.mcap?seconds=1",
          "/api/backplot?channel=nothing", "/api/programs?name=a.nc&replace=1", "/nothing")  # fmt: skip
-HTTP_WORDS = (*VALUES, "%00", "%2F", "%2e%2e", "../", "?", "&", "=", "#", "%", "%ff", "%u0041", "//", "unit=", "x" * 9000, "nan", "1e999")
+HTTP_WORDS = (
+    *VALUES,
+    "%00",
+    "%2F",
+    "%2e%2e",
+    "../",
+    "?",
+    "&",
+    "=",
+    "#",
+    "%",
+    "%ff",
+    "%u0041",
+    "//",
+    "unit=",
+    "x" * 9000,
+    "nan",
+    "1e999",
+)
 
 
 def http_requests(folder: Path) -> Target:
     """Raw requests over a socket of this computer: path, query, headers and body with changes."""
-    site = sites(folder)
+    sites = Sites(folder)
 
     def make(draw: random.Random) -> bytes:
         path = draw.choice(PATHS)
         if draw.random() < 0.7:
             path = mutated_text([path], draw, HTTP_WORDS, longest=20_000)
         method = draw.choice(("GET", "GET", "GET", "POST", "POST", "HEAD", "PUT", "DELETE", "OPTIONS", "X", ""))
-        body = draw.choice((b"", b"M30\n", b'{"user": "a", "password": "b"}', b"\xff\xfe", b"{", b"[" * 3000, b"x" * 100_000, b'{"user": 1}'))
-        headers = {"Host": "localhost", "Cookie": "cnc_ptp_PORT=COOKIE", "X-Token": "TOKEN", "Content-Length": str(len(body))}
+        body = draw.choice(
+            (
+                b"",
+                b"M30\n",
+                b'{"user": "a", "password": "b"}',
+                b"\xff\xfe",
+                b"{",
+                b"[" * 3000,
+                b"x" * 100_000,
+                b'{"user": 1}',
+            )
+        )
+        headers = {
+            "Host": "localhost",
+            "Cookie": "cnc_ptp_PORT=COOKIE",
+            "X-Token": "TOKEN",
+            "Content-Length": str(len(body)),
+        }
         if draw.random() < 0.5:
-            name = draw.choice([*headers, "Origin", "Authorization", "Range", "If-None-Match", "Content-Encoding", "Transfer-Encoding", "Upgrade"])
+            name = draw.choice(
+                [
+                    *headers,
+                    "Origin",
+                    "Authorization",
+                    "Range",
+                    "If-None-Match",
+                    "Content-Encoding",
+                    "Transfer-Encoding",
+                    "Upgrade",
+                ]
+            )
             headers[name] = draw.choice(HTTP_WORDS).replace("\n", "")
-        head = f"{method} {path.replace(' ', '+')} HTTP/1.1\r\n" + "".join(f"{name}: {value}\r\n" for name, value in headers.items())
+        head = f"{method} {path.replace(' ', '+')} HTTP/1.1\r\n" + "".join(
+            f"{name}: {value}\r\n" for name, value in headers.items()
+        )
         data = head.encode("utf-8", "replace") + b"Connection: close\r\n\r\n" + body
         return mutated_bytes(data, draw) if draw.random() < 0.1 else data
 
     def call(data: bytes) -> None:
-        here = site()
+        here = sites.next_one()
         cookie = f"cnc_ptp_{here.http.port}={here.cookie}".encode()
         data = data.replace(b"cnc_ptp_PORT=COOKIE", cookie).replace(b"TOKEN", here.login.token.encode())
         status = here.loop.run_until_complete(asked(here, data))
@@ -231,7 +307,7 @@ def http_requests(folder: Path) -> Target:
         if status >= 400:
             raise CncError(26233, f"status {status}")
 
-    return Target(make, call)
+    return Target(make, call, sites.close)
 
 
 async def asked(here: Site, data: bytes) -> int:
@@ -243,7 +319,7 @@ async def asked(here: Site, data: bytes) -> int:
             writer.write_eof()
         first = await within(reader.readline(), 10.0)
         await within(reader.read(1 << 22), 10.0)
-    except (ConnectionError, socket.error):
+    except OSError:
         return 0
     finally:
         writer.close()

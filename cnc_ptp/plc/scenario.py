@@ -69,7 +69,7 @@ _Loader.add_implicit_resolver("tag:yaml.org,2002:float", _FLOAT, list("-+0123456
 
 def read_value(text: str) -> Any:
     """A value as in a scenario. Raises yaml.YAMLError."""
-    return yaml.load(text, Loader=_Loader)
+    return yaml_text.load(text, _Loader)
 
 
 def parse_scenario(text: str, file: str, kinds: Mapping[str, str], read: ReadFile | None = None) -> list[Entry]:
@@ -80,7 +80,7 @@ def parse_scenario(text: str, file: str, kinds: Mapping[str, str], read: ReadFil
     """
     try:
         root = yaml.compose(text, _Loader)
-    except yaml.YAMLError as error:
+    except (yaml.YAMLError, UnicodeEncodeError) as error:
         raise ScenarioError(BAD_SCENARIO, f"scenario {file} is not YAML: {error}", "nothing was started") from None
     if root is None:
         return []
@@ -168,7 +168,7 @@ def _construct(node: yaml.Node) -> dict[str, Any]:
             raise CncError(BAD_SCENARIO, f"'{key}' appears twice in the entry")
     try:
         value = _Loader("").construct_object(node, deep=True)
-    except (yaml.YAMLError, ValueError, TypeError) as error:
+    except (yaml.YAMLError, *yaml_text.UNFIT) as error:
         reason = error.problem if isinstance(error, yaml.MarkedYAMLError) else error
         raise CncError(BAD_SCENARIO, f"a value cannot be read: {reason}") from None
     return {str(name): argument for name, argument in value.items()}
