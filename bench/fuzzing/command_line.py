@@ -140,6 +140,8 @@ def line(known: Known, draw: random.Random) -> list[str]:
 
 def command_lines(folder: Path) -> Target:
     """Of all commands."""
+    import matplotlib.font_manager  # noqa: F401 - it makes folders of its own for what it has found once
+
     files(folder)
     commands = [*known(cli.main)]
     before = {path.name for path in folder.iterdir()}

@@ -46,16 +46,20 @@ def _look(event: str, arguments: tuple[Any, ...]) -> None:
         if isinstance(flags, int) and flags & WRITES:
             _require_inside(event, path)
     elif event in ON_FILES:
-        for path in arguments[: ON_FILES[event]]:
-            _require_inside(event, path)
+        paths = arguments[: ON_FILES[event]]
+        folders = [each for each in arguments[ON_FILES[event] :] if isinstance(each, int)][-len(paths) :]
+        for place, path in enumerate(paths):
+            _require_inside(event, path, folders[place] if place < len(folders) else -1)
     elif event in STARTS:
         _refuse(f"{event} {arguments[:2]!r}")
 
 
-def _require_inside(event: str, path: Any) -> None:
+def _require_inside(event: str, path: Any, folder: int = -1) -> None:
+    """`folder`: descriptor of the folder that the path is relative to; -1: the working directory."""
     if isinstance(path, int):
         return  # a descriptor that was opened before
-    name = os.path.abspath(os.fsdecode(path))
+    begin = os.readlink(f"/proc/self/fd/{folder}") if folder >= 0 else os.getcwd()
+    name = os.path.abspath(os.path.join(begin, os.fsdecode(path)))
     inside = f"{name}{os.sep}".startswith(_folder[-1]) or name in HARMLESS
     if not inside and not f"{os.path.realpath(name)}{os.sep}".startswith(_folder[-1]):
         _refuse(f"{event} {name}")

@@ -31,7 +31,7 @@ from cnc_ptp.plc.hli.hli import Hli
 from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.protocol.blocks import Command, CycleBlock
 from cnc_ptp.protocol.commands import COMMANDS, Argument
-from cnc_ptp.protocol.unit import PLC, Unit
+from cnc_ptp.protocol.unit import A_CLIENT, PLC, Unit
 from cnc_ptp.spindle.spindle_unit import SpindleUnit
 from cnc_ptp.state.machine_state import StateStore
 from cnc_ptp.wire.block_codec import codec_of, encode_block, has_plain_header, head_of
@@ -70,6 +70,7 @@ class Running:
         for name, unit in self.units.items():
             unit.command(Command(name, "?", {}), self.machine.next_cycle)
             unit.take_events(), unit.take_records()
+            unit._given_by = A_CLIENT  # by whom the last command was
             if isinstance(unit, SpindleUnit):
                 unit._refused.clear()  # what it tells channels of refusals
         return self.store.encode(self.machine, with_plc=True)

@@ -6,7 +6,7 @@ import asyncio
 import json
 import logging
 import random
-from collections.abc import Awaitable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -27,6 +27,8 @@ from cnc_ptp.web.programs.programs import ProgramFolder
 from cnc_ptp.web.server import Server
 from cnc_ptp.web.session import Session
 
+PATIENCE = 0.2
+"""Seconds for an answer: a request that is not whole gets none."""
 FRESH = 3000
 """Messages after which the server is made anew."""
 MESSAGES: tuple[dict[str, Any], ...] = (
@@ -315,17 +317,11 @@ async def asked(here: Site, data: bytes) -> int:
     reader, writer = await asyncio.open_connection("127.0.0.1", here.http.port)
     try:
         writer.write(data)
-        if writer.can_write_eof():
-            writer.write_eof()
-        first = await within(reader.readline(), 10.0)
-        await within(reader.read(1 << 22), 10.0)
-    except OSError:
+        first = await asyncio.wait_for(reader.readline(), PATIENCE)
+        await asyncio.wait_for(reader.read(1 << 22), PATIENCE)
+    except (OSError, TimeoutError):
         return 0
     finally:
         writer.close()
     words = first.split()
     return int(words[1]) if len(words) > 1 and words[1].isdigit() else 0
-
-
-async def within(what: Awaitable[bytes], seconds: float) -> bytes:
-    return await asyncio.wait_for(what, seconds)
