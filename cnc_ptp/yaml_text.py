@@ -24,4 +24,15 @@ def load(text: str, parser: Any = PARSER) -> Any:
 
 def unfit(error: Exception) -> yaml.YAMLError:
     """One of `UNFIT` as the error that a wrong text is."""
-    return yaml.constructor.ConstructorError(None, None, f"a value cannot be read: {error}")
+    return yaml.constructor.ConstructorError(None, None, f"a value cannot be read: {reason_of(error)}")
+
+
+def reason_of(error: Exception) -> str:
+    """Why a value cannot be read, of a `yaml.YAMLError` or one of `UNFIT`."""
+    if isinstance(error, yaml.MarkedYAMLError):
+        return str(error.problem)
+    if isinstance(error, RecursionError):
+        return "lists in lists are too deep"
+    if isinstance(error, (AttributeError, LookupError)):
+        return "it has not the form that its tag says"
+    return str(error)

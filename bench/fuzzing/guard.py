@@ -60,8 +60,11 @@ def _require_inside(event: str, path: Any, folder: int = -1) -> None:
         return  # a descriptor that was opened before
     begin = os.readlink(f"/proc/self/fd/{folder}") if folder >= 0 else os.getcwd()
     name = os.path.abspath(os.path.join(begin, os.fsdecode(path)))
-    inside = f"{name}{os.sep}".startswith(_folder[-1]) or name in HARMLESS
-    if not inside and not f"{os.path.realpath(name)}{os.sep}".startswith(_folder[-1]):
+    if event == "open":
+        found = os.path.realpath(name)  # where links lead; other events concern the link itself
+    else:
+        found = os.path.join(os.path.realpath(os.path.dirname(name)), os.path.basename(name))
+    if not f"{found}{os.sep}".startswith(_folder[-1]) and name not in HARMLESS:
         _refuse(f"{event} {name}")
 
 

@@ -169,8 +169,7 @@ def _construct(node: yaml.Node) -> dict[str, Any]:
     try:
         value = _Loader("").construct_object(node, deep=True)
     except (yaml.YAMLError, *yaml_text.UNFIT) as error:
-        reason = error.problem if isinstance(error, yaml.MarkedYAMLError) else error
-        raise CncError(BAD_SCENARIO, f"a value cannot be read: {reason}") from None
+        raise CncError(BAD_SCENARIO, f"a value cannot be read: {yaml_text.reason_of(error)}") from None
     return {str(name): argument for name, argument in value.items()}
 
 

@@ -166,6 +166,10 @@ FAULTS = [
     ),
     ("- {at: 0, at: 1, to: x, do: stop}", "'at' appears twice in the entry"),
     ("- {at: !!int abc, to: x, do: stop}", "a value cannot be read: invalid literal for int() with base 10: 'abc'"),
+    ("- {at: 2001-13-45, to: x, do: stop}", "a value cannot be read: month must be in 1..12"),
+    ("- {at: !!bool x, to: x, do: stop}", "a value cannot be read: it has not the form that its tag says"),
+    ("- {at: !!timestamp x, to: x, do: stop}", "a value cannot be read: it has not the form that its tag says"),
+    ("- {at: !!int _, to: x, do: stop}", "a value cannot be read: it has not the form that its tag says"),
     ("- {at: 0, to: x, do: stop, [1]: 2}", "a value cannot be read: found unhashable key"),
     (
         "- {at: 0, to: x, do: !!python/name:os.system }",
