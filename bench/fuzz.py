@@ -16,7 +16,10 @@ import click
 from bench.fuzzing.engine import Verdict, run
 from bench.fuzzing.kinds import KINDS
 
-HEAD = f"{'kind':<15} {'seed':>6} {'count':>10} {'refused':>10} {'undocumented':>12} {'slowest, s':>10} {'growth, KiB':>11} {'s':>6}"
+HEAD = (
+    f"{'kind':<15} {'seed':>6} {'count':>10} {'refused':>10} {'undocumented':>12} {'slowest, s':>10} "
+    f"{'growth, KiB':>11} {'s':>6}"
+)
 
 
 def row(verdict: Verdict) -> str:

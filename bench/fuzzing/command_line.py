@@ -26,8 +26,11 @@ LEFT_OUT = {"--publish", "--help", "--version"}
 """Options that start a node or end everything."""
 STATUS = (0, 1, 2)
 NUMBERS = ("0", "1", "2", "0.01", "-1", "1e-9", "100", "1e9", "nan", "inf", "1e999", "x", "", "99999999999999999999")
-WORDS = ("x", "y", "s", "channel", "plc", "x/set_velocity", "/x/state", "/events", "set_position", "following_error", "x.getriebe.0.kv=1000",
-         "x.getriebe.0.kv=nan", "G1", "70349", "P-ERR-23004", "x=axis", "friction", "100:5000", "x.set_velocity != 0", "500MB", "1s", "XY", "=", ",")  # fmt: skip
+WORDS = (
+    *("x", "y", "s", "channel", "plc", "x/set_velocity", "/x/state", "/events", "set_position", "following_error"),
+    *("x.getriebe.0.kv=1000", "x.getriebe.0.kv=nan", "G1", "70349", "P-ERR-23004", "x=axis", "friction", "100:5000"),
+    *("x.set_velocity != 0", "500MB", "1s", "XY", "=", ","),
+)
 OUTPUTS = (
     "out.html",
     "out.svg",

@@ -87,7 +87,10 @@ class Finding(NamedTuple):
 
 @dataclass
 class Verdict:
-    """What has become of the inputs of a kind. `findings`: one of each place; `growth`: KiB in the second half of them."""
+    """What has become of the inputs of a kind.
+
+    `findings`: one of each place; `growth`: KiB in the second half of the inputs.
+    """
 
     kind: str
     seed: int

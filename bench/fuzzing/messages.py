@@ -133,9 +133,8 @@ def commands(_folder: Path) -> Target:
         before = here.state()
         record = unit.command(Command(given.unit, given.command, arguments), here.machine.next_cycle)
         if not record.accepted and here.state() != before:
-            raise Broken(
-                f"{given.unit}: {given.command} was refused ({record.error_id} {record.message[:200]}) and has changed it"
-            )
+            refusal = f"{record.error_id} {record.message[:200]}"
+            raise Broken(f"{given.unit}: {given.command} was refused ({refusal}) and has changed it")
         error = None if record.accepted else CncError(record.error_id, record.message)
         json.loads(record.arguments_json)
         codec_safe(here.tick(given.blocks) if given.blocks else {})
@@ -199,7 +198,8 @@ def drawn(argument: Argument, units: list[str], draw: random.Random) -> Any:
 
 ROWS: tuple[list[Any], ...] = (
     [[0, 0], [10, 5.5], [20, 0]], [[0.0, 0.0], [10.0, math.nan]], [[10, 0], [0, 0]], [["x", "y"]], ["x", "y"], ["x"],
-    [[0.5, [1, 2], [0, 0]], [1.0, [2, 3]]], [[0.1, [1.0]], [0.2, [1.1]]], [[100, 1.0, 0.0, 0.0, 1], [110, 1.1, 0.0, 0.0, 1]],
+    [[0.5, [1, 2], [0, 0]], [1.0, [2, 3]]], [[0.1, [1.0]], [0.2, [1.1]]],
+    [[100, 1.0, 0.0, 0.0, 1], [110, 1.1, 0.0, 0.0, 1]],
     [[10**400, 0, 0, 0, 1]], [[1, 1, 1]] * 2000, [[1e308, -1e308], [1.7e308, 1e308]], [1.0, 2.0], [],
 )  # fmt: skip
 

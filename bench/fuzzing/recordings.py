@@ -101,7 +101,7 @@ def recordings(reader: Callable[[Path], None], folder: Path) -> Target:
 
 
 def every_byte(folder: Path) -> Target:
-    """Input n is form n mod 2, its byte n / 4 flipped or the file cut there, before all readers: 4 · size of them all."""
+    """Input n is form n mod 2, its byte n / 4 flipped, or the file cut there; 4 · size inputs are all of them."""
     forms, file = both(folder), folder / "run.mcap"
 
     def make(draw: Draw) -> bytes:

@@ -47,7 +47,9 @@ SMALL_MACHINE = """\
 /machine: {ros__parameters: {channels: [ch], axes: [x, "y", c], spindles: [s]}}
 /c: {ros__parameters: {kenngr: {achs_typ: ACHSTYP_ROTATOR}}}
 /s: {ros__parameters: {kopf.achs_nr: 4, kenngr.achs_typ: ACHSTYP_SPINDEL, getriebe: {"0": {kv: 3000}}}}
-/ch: {ros__parameters: {nullp_data: o.yaml, pzv_data: p.yaml, werkz_data: t.yaml, spdl_anzahl: 1, spindel: {"0": {bezeichnung: S, log_achs_nr: 4}}}}
+/ch:
+  ros__parameters: {nullp_data: o.yaml, pzv_data: p.yaml, werkz_data: t.yaml, spdl_anzahl: 1, main_spindle_ax_nr: 4,
+    main_spindle_name: S, spindel: {"0": {bezeichnung: S, log_achs_nr: 4}}}
 """
 OFFSETS = """\
 G54: {name: left vice, X: 100.0001, Y: -50.5}
@@ -61,7 +63,7 @@ CLAMPS = "0: {name: table, X: 1.5}\n149: {C: -90}\n"
 TOOLS = """\
 5: {name: turning tool, type: turning, orientation: 3, offsets: {X: 20.5, Y: 41}, wear: {X: -0.02}}
 6: {type: turning, d: {6: {orientation: 3, offsets: {X: 40}}, 16: {orientation: 4, offsets: {X: 37}}}}
-7: {length: 75, radius: 5, spindle: 2, min_speed: 100, max_speed: 5000, valid: true, fixed: false}
+7: {length: 75, radius: 5, spindle: 4, min_speed: 100, max_speed: 5000, valid: true, fixed: false}
 """
 
 
@@ -146,8 +148,9 @@ def lists(_folder: Path) -> Target:
 
 LIST_WORDS = (
     *VALUES,
-    *("\r\n", "\r", "\n", " # ", "struct", "beg", "end", "[0]", "[999999999]", "[-1]", "achse[0].", "kenngr.achs_typ ", "0x4"),
-    *("gruppe[0].achs_anzahl 99", "spdl_anzahl 1000000", "listen[0] /etc/passwd", "ACHSTYP_SPINDEL", '"open', "\xff\xfe"),
+    *("\r\n", "\r", "\n", " # ", "struct", "beg", "end", "[0]", "[999999999]", "[-1]", "achse[0].", "0x4"),
+    *("kenngr.achs_typ ", "\xff\xfe"),
+    *("gruppe[0].achs_anzahl 99", "spdl_anzahl 1000000", "listen[0] /etc/passwd", "ACHSTYP_SPINDEL", '"open'),
 )  # fmt: skip
 
 
@@ -186,7 +189,8 @@ FILES = {"cam file": CAM, "setpoint file": SETPOINTS}
 
 VARIATIONS = ("x.getriebe.0.kv=2000:8000:13", "x.getriebe.0.kv=1000,2000,3000", "s.getriebe.0.kv=normal(3000,100)",
               "x.getriebe.0.kv=log:100:1000:5", "x.getriebe.0.kv=500:9000")  # fmt: skip
-GOALS = ("max(following_error.x)", "max:min(set_velocity.x)", "rms(following_error.x + following_error.y) / 2", "program_time",
+GOALS = ("max(following_error.x)", "max:min(set_velocity.x)", "rms(following_error.x + following_error.y) / 2",
+         "program_time",
          "max(abs(set_acceleration.x)) ** 2 - last(set_position.x)")  # fmt: skip
 SWEEP_WORDS = (
     *VALUES,

@@ -228,9 +228,12 @@ def begins_task(text: str) -> bool:
         return False
 
 
-PATHS = ("/", "/api/session", "/api/login", "/api/logout", "/ws", "/static/app.js", "/static/../server.py", "/api/programs", "/api/programs/part.nc",
-         "/api/parameters?unit=x", "/api/curve?spindle=s", "/api/recorded?signals=x.set_position&from=0&to=1&points=5", "/api/snapshot.mcap?seconds=1",
-         "/api/backplot?channel=nothing", "/api/programs?name=a.nc&replace=1", "/nothing")  # fmt: skip
+PATHS = (
+    *("/", "/api/session", "/api/login", "/api/logout", "/ws", "/static/app.js", "/static/../server.py", "/nothing"),
+    *("/api/programs", "/api/programs/part.nc", "/api/programs?name=a.nc&replace=1", "/api/backplot?channel=nothing"),
+    *("/api/parameters?unit=x", "/api/curve?spindle=s", "/api/snapshot.mcap?seconds=1"),
+    "/api/recorded?signals=x.set_position&from=0&to=1&points=5",
+)
 HTTP_WORDS = (
     *VALUES,
     "%00",

@@ -162,6 +162,10 @@ def _construct(node: yaml.Node) -> dict[str, Any]:
     """The keys and values of an entry; empty when it is no mapping. Raises CncError for what YAML cannot construct."""
     if not isinstance(node, yaml.MappingNode):
         return {}
+    try:
+        yaml_text.require_few(node)
+    except (yaml.YAMLError, RecursionError) as error:
+        raise CncError(BAD_SCENARIO, f"a value cannot be read: {yaml_text.reason_of(error)}") from None
     keys = [key.value for key, _ in node.value]
     for key in keys:
         if keys.count(key) > 1:
