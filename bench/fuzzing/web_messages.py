@@ -14,7 +14,7 @@ from unittest.mock import patch
 from aiohttp.test_utils import TestServer
 
 from bench.fuzzing.engine import Broken, Target
-from bench.fuzzing.mutation import VALUES, deep, mutated_bytes, mutated_message, mutated_text
+from bench.fuzzing.mutation import VALUES, mutated_bytes, mutated_message, mutated_text
 from bench.fuzzing.texts import MILL
 from cnc_ptp.catalogue import entry
 from cnc_ptp.errors import CncError
@@ -203,7 +203,8 @@ def socket_messages(folder: Path) -> Target:
         if message["type"] in ("identify", "circle") and kind < 0.8:
             message = MESSAGES[0]
         if kind < 0.2:
-            return json.dumps({**message, "id": deep(50)})
+            depth = draw.choice((50, 5000))
+            return f'{{"type": "{message["type"]}", "id": {"[" * depth}{"]" * depth}}}'
         return json.dumps(mutated_message(message, draw, WORDS))
 
     def call(text: str) -> None:

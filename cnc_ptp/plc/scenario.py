@@ -165,7 +165,8 @@ def _construct(node: yaml.Node) -> dict[str, Any]:
     try:
         yaml_text.require_few(node)
     except (yaml.YAMLError, RecursionError) as error:
-        raise CncError(BAD_SCENARIO, f"a value cannot be read: {yaml_text.reason_of(error)}") from None
+        reason = yaml_text.reason_of(error)
+        raise CncError(BAD_SCENARIO, f"a value cannot be read: {reason}") from None
     keys = [key.value for key, _ in node.value]
     for key in keys:
         if keys.count(key) > 1:
@@ -173,7 +174,8 @@ def _construct(node: yaml.Node) -> dict[str, Any]:
     try:
         value = _Loader("").construct_object(node, deep=True)
     except (yaml.YAMLError, *yaml_text.UNFIT) as error:
-        raise CncError(BAD_SCENARIO, f"a value cannot be read: {yaml_text.reason_of(error)}") from None
+        reason = yaml_text.reason_of(error)
+        raise CncError(BAD_SCENARIO, f"a value cannot be read: {reason}") from None
     return {str(name): argument for name, argument in value.items()}
 
 

@@ -1,6 +1,7 @@
 """Bytes that are no message of their topic: refused with 26184, and nodes leave them out (found by bench.fuzz)."""
 
 import struct
+from types import SimpleNamespace
 
 import pytest
 from recording_support import Blocks
@@ -109,6 +110,14 @@ def test_other_errors_of_a_node_are_not_hidden():
         raise CncError(22001, "a reason")
 
     assert refusal(Unready().readable("plc/block", take), b"") == "P-ERR-22001 a reason"
+
+
+def test_other_nodes_write_it_into_their_log():
+    told = []
+    node = SimpleNamespace(get_logger=lambda: SimpleNamespace(warning=told.append))
+    text = "clock: topic plc/block: 4 bytes are no message of a block: its head alone has 32; they are ignored"
+    PollingNode.tell_unreadable(node, text)
+    assert told == [f"P-WARN-26184 {text}"]
 
 
 def test_a_unit_makes_a_warning_of_it():
