@@ -17,13 +17,13 @@ from bench.fuzzing.engine import Verdict, run
 from bench.fuzzing.kinds import KINDS
 
 HEAD = (
-    f"{'kind':<15} {'seed':>6} {'count':>10} {'refused':>10} {'undocumented':>12} {'slowest, s':>10} "
+    f"{'kind':<15} {'seed':>6} {'count':>10} {'refused':>10} {'undocumented':>12} {'slowest, s':>10} {'number':>8} "
     f"{'growth, KiB':>11} {'s':>6}"
 )
 
 
 def row(verdict: Verdict) -> str:
-    numbers = f"{verdict.count:>10,} {verdict.refused:>10,} {verdict.undocumented:>12} {verdict.slowest:>10.2f}"
+    numbers = f"{verdict.count:>10,} {verdict.refused:>10,} {verdict.undocumented:>12} {verdict.slowest:>10.2f} {verdict.slowest_number:>8}"
     return f"{verdict.kind:<15} {verdict.seed:>6} {numbers} {verdict.growth:>11,} {verdict.seconds:>6.0f}"
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import reprlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -29,6 +30,8 @@ from cnc_ptp.protocol.run_time import LONGEST_RUN
 
 BAD_SCENARIO = 25101
 CAMS = ("couple_cam", "change_cam")
+LONGEST_NAME = 200
+"""Characters of a unit or command in an error's text."""
 SWITCH_WORDS = {"on": True, "off": False}
 
 
@@ -106,8 +109,9 @@ def _entry(node: yaml.Node, kinds: Mapping[str, str], read: ReadFile | None) -> 
         raise CncError(BAD_SCENARIO, "an entry needs at (seconds), to (unit) and do (command)")
     at, to, do = (arguments.pop(name) for name in ("at", "to", "do"))
     if isinstance(at, bool) or not isinstance(at, (int, float)) or not 0.0 <= at <= LONGEST_RUN:
-        raise CncError(BAD_SCENARIO, f"at = {at!r} must be a time in seconds, 0 to {LONGEST_RUN:.0f}")
-    to, do = str(to), str(do)
+        shown = reprlib.repr(at) if isinstance(at, (list, dict)) else repr(at)
+        raise CncError(BAD_SCENARIO, f"at = {shown} must be a time in seconds, 0 to {LONGEST_RUN:.0f}")
+    to, do = str(to)[:LONGEST_NAME], str(do)[:LONGEST_NAME]
     if to not in kinds:
         raise CncError(BAD_SCENARIO, f"unit '{to}' does not exist in the machine. Known: {', '.join(sorted(kinds))}")
     if do in INTERNAL:

@@ -169,6 +169,7 @@ FAULTS = [
     ("- {at: !!int abc, to: x, do: stop}", "a value cannot be read: invalid literal for int() with base 10: 'abc'"),
     ("- {at: 2001-13-45, to: x, do: stop}", "a value cannot be read: month must be in 1..12"),
     (f"- {{at: {LAUGHS}, to: x, do: stop}}", "a value cannot be read: its aliases make more than 1000000 values of it"),
+    (f"- {{at: [{'1, ' * 9999}1], to: x, do: stop}}", "at = [1, 1, 1, 1, 1, 1, ...] must be a time in seconds, 0 to 10000000"),
     ("- {at: &a [*a], to: x, do: stop}", "a value cannot be read: its aliases make more than 1000000 values of it"),
     (f"- {{at: {'[' * 900}{']' * 900}, to: x, do: stop}}", "a value cannot be read: lists in lists are too deep"),
     ("- {at: !!bool x, to: x, do: stop}", "a value cannot be read: it has not the form that its tag says"),
