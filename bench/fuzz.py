@@ -1,220 +1,55 @@
-"""`python -m bench.fuzz [BYTES] [SEED] [DIALECT]`: mutated programs; only ProgramError may come, no hang, no growth.
+"""`python -m bench.fuzz [KIND]... [--count N] [--seed S] [--minutes M]`: mutated inputs of every kind.
 
-Each is interpreted with tables of tools and offsets and a clamp position, or without them; some are checked on a
-machine of config or examples, too.
+None but documented refusals may come, none may hang, write outside of its folder or let memory grow.
 """
 
 from __future__ import annotations
 
-import random
-import resource
+import faulthandler
 import sys
-import time
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
-from functools import cache
+import tempfile
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
-from cnc_ptp.channel.program_check import ProgramCheck
-from cnc_ptp.nc.canonical_text import format_block
-from cnc_ptp.nc.coordinates.codes import initial_state
-from cnc_ptp.nc.faults import ProgramError
-from cnc_ptp.nc.interpreter import interpret
-from cnc_ptp.nc.parser import parse_all
-from cnc_ptp.nc.plain_channel import plain_channel
-from cnc_ptp.nc.program import Limits
-from cnc_ptp.nc.vocabularies import VOCABULARIES
-from cnc_ptp.parameters import NO_OFFSET_TABLES, NO_TOOLS, OffsetTables, Tool, ToolTable, read_machine
+import click
 
-ROOT = Path(__file__).parents[1]
-AXES = ("X", "Y", "Z")
-SPINDLES = ("S", "S2")
-LIMITS = Limits(call_depth=5, repeats=200)
-RECORDS = {
-    1: Tool(number=1, length=75.0, radius=5.0, wear_length=-0.25),
-    2: Tool(number=2, length=110.5, offsets=(0.5, -0.25, 0.0), values=(12.0, 0.5)),
-    3: Tool(number=3, length=40.0, offsets=(10.0, 20.0, 0.0), fixed=True),
-    7: Tool(number=7, valid=False),
-}
-TOOLS = (
-    NO_TOOLS,
-    *(ToolTable(RECORDS, True, with_t, at_once) for with_t in (False, True) for at_once in (False, True)),
+from bench.fuzzing.engine import Verdict, run
+from bench.fuzzing.kinds import KINDS
+
+HEAD = (
+    f"{'kind':<15} {'seed':>6} {'count':>10} {'refused':>10} {'undocumented':>12} {'slowest, s':>10} {'number':>8} "
+    f"{'growth, KiB':>11} {'s':>6}"
 )
-OFFSETS = (
-    NO_OFFSET_TABLES,
-    OffsetTables({1: (100.0, -50.5, 3.0), 7: (1.0, 2.0, 3.0)}, {7: frozenset({1})}, clamp={1: (1.5, 0.0, -2.0)}),
-    OffsetTables({0: (1.0, 1.0, 1.0), 1: (5.0, 5.0, 5.0)}, default=1, g53=True, clamp={0: (0.5, 0.5, 0.5)}),
+
+
+def row(verdict: Verdict) -> str:
+    numbers = f"{verdict.count:>10,} {verdict.refused:>10,} {verdict.undocumented:>12} {verdict.slowest:>10.2f} {verdict.slowest_number:>8}"
+    return f"{verdict.kind:<15} {verdict.seed:>6} {numbers} {verdict.growth:>11,} {verdict.seconds:>6.0f}"
+
+
+@click.command()
+@click.argument("kinds", nargs=-1, type=click.Choice([*KINDS]), metavar="[KIND]...")
+@click.option("--count", type=click.IntRange(1), default=1000, show_default=True, help="Inputs of each kind.")
+@click.option("--seed", type=int, default=1, show_default=True, help="Of all random numbers.")
+@click.option(
+    "--first", type=click.IntRange(0), default=0, help="Number of the first input: --first N --count 1 is one."
 )
-WORDS = (
-    *(
-        "P1",
-        "P[",
-        "]",
-        "[",
-        "V.P.A",
-        "V.L.B[1]",
-        "@P1",
-        "=",
-        "==",
-        "+",
-        "-",
-        "*",
-        "/",
-        "**",
-        " MOD ",
-        "SIN[",
-        "SQRT[",
-        '"',
-    ),
-    *("$IF ", "$ELSE", "$ENDIF", "$FOR P1=1,3,1", "$ENDFOR", "$WHILE ", "$ENDWHILE", "$GOTO ", "N10:", "[A]", "#VAR"),
-    *(
-        "#ENDVAR",
-        "#CS ON [",
-        "#CS OFF",
-        "#ROTATION ON [ANGLE=",
-        "#SCALE X2",
-        "#PSET X1",
-        "#MSG [",
-        "#ERROR [ID=",
-        "#FLUSH",
-    ),
-    *(
-        "G54",
-        "G159=",
-        "G92 X1",
-        "G21",
-        "G70",
-        "G98 X",
-        "LL UP",
-        "L CYCLE [NAME=a.nc @P1=",
-        "%L UP",
-        "M29",
-        "M30",
-        "\\",
-        "\n",
-    ),
-    *("G81 X1 Y1 Z-1 R1", "G83 Z-5 R1 Q", "L3", "G28 X0", "G53 ", "G43 H", "G54.1 P", "G10 L20 P1 X", "M98 P", "M99"),
-    *("O100", "%", "G92.2", "G80", "#1=", "o<a> call", "G64 P", "K2", "G90.1", "G93", "F"),
-    *(
-        "T1 M6",
-        "D1",
-        "D2 ",
-        "D0",
-        "T3 ",
-        "G160=1 X1",
-        "G160=0 Y",
-        "V.G.NP[1].V.X=",
-        "V.G.NP_AKT.V.Y",
-        "V.G.NP_DEFAULT=",
-    ),
-    *("V.G.WZ[2].L", "V.G.WZ_AKT.R=", "V.A.PZV.X", "#MCS ON", "#MCS OFF", "#ACS ON [0,0,0,30,", "G02 X10 I5 F100"),
-    *("G18 G03 Z5 R4 F9", "#CONTOUR MODE [DEV PATH_DEV=", "#HSC ON [BSPLINE PATH_DEV=0.1]", "G261", "G49", "G43 H2 Z5"),
-    *("'H", "/2", "(", ")", ";", "%d", "9" * 12, ".", ",", "\t", "\x00", "\ufeff", "é", "1e9", "-113.0", "0.1"),
-)
-"""Pieces that make mutations meaningful."""
-
-
-MACHINES = (
-    "config/mill.yaml",
-    "config/lathe.yaml",
-    "examples/probe.yaml",
-    "examples/spindles/three_spindles.yaml",
-    "examples/spindles/gears_programmed.yaml",
-)
-ON_MACHINES = 0.1
-"""Part of the programs that are checked on one of them."""
-
-
-def corpus(dialect: str = "") -> list[str]:
-    """Programs to start from: all of the tests and the examples, or those of one vocabulary."""
-    files = [*(ROOT / "test" / "nc").rglob("*.nc"), *(ROOT / "examples").rglob("*.n*c")]
-    texts = [file.read_text(encoding="utf-8") for file in sorted({*files})]
-    return [text for text in texts if dialect in ("", dialect_of(text))]
-
-
-def dialect_of(text: str) -> str:
-    return "iso" if "dialect iso" in text else "twincat"
-
-
-def mutated(texts: Sequence[str], draw: random.Random) -> str:
-    """One program with a few changes."""
-    text = draw.choice(texts)
-    for _ in range(draw.randint(1, 6)):
-        at = draw.randint(0, len(text))
-        end = min(len(text), at + draw.choice((0, 1, 1, 2, 5, 30)))
-        kind = draw.randrange(5)
-        if kind == 0:
-            piece = draw.choice(WORDS)
-        elif kind == 1:
-            piece = chr(draw.choice((draw.randrange(32, 127), draw.randrange(256))))
-        elif kind == 2:
-            other = draw.choice(texts)
-            begin = draw.randint(0, len(other))
-            piece = other[begin : begin + draw.randint(0, 60)]
-        elif kind == 3:
-            piece = text[at:end] * draw.choice((0, 2, 3, 50))
-        else:
-            piece = ""
-        text = text[:at] + piece + text[end:]
-    return text[:20_000]
-
-
-@cache
-def machine_check(machine: str) -> ProgramCheck:
-    """Of the first channel of a machine file."""
-    parameters = read_machine(ROOT / machine)
-    channels = {name: replace(channel, repeats=LIMITS.repeats) for name, channel in parameters.channels.items()}
-    return ProgramCheck.of_first_channel(replace(parameters, channels=channels), "fuzz.nc")
-
-
-def survives(text: str, dialect: str, draw: random.Random) -> None:
-    """Raises whatever is no ProgramError."""
-    vocabulary = VOCABULARIES[dialect or dialect_of(text)]
-    files = {"a.nc": "X[@P1]\nM29", "g81.nc": "G00 Z[@P2]\nG01 Z[@P1]\nM29"}
-    program, errors = parse_all(text, "fuzz.nc", files=files, vocabulary=vocabulary)
-    tools, offsets, clamp = draw.choice(TOOLS), draw.choice(OFFSETS), draw.randrange(2)
-    settings: dict[str, Any] = {"tools": tools, "offsets": offsets, "limits": LIMITS}
-    channel = plain_channel(AXES, SPINDLES, vocabulary)._replace(**settings)
-    state = initial_state(channel, clamp_index=clamp)
-    try:
-        for block in interpret(program, (0.0, 0.0, 0.0), channel, state=state):
-            format_block(block)
-    except ProgramError as error:
-        errors.append(error)
-    if draw.random() < ON_MACHINES:
-        errors += machine_check(draw.choice(MACHINES)).errors(text, "fuzz.nc", files, vocabulary)
-    for error in errors:
-        assert error.line >= 1 and error.column >= 1 and error.caret and str(error)
-
-
-def run(size: int, seed: int, dialect: str = "") -> Iterator[int]:
-    """Mutates programs until `size` bytes were tried; yields the bytes so far. Raises at the first failure."""
-    draw, texts, done = random.Random(seed), corpus(dialect), 0
-    while done < size:
-        text = mutated(texts, draw)
-        done += len(text.encode("utf-8", errors="replace"))
-        try:
-            survives(text, dialect, draw)
-        except Exception:
-            print(repr(text), file=sys.stderr)
-            raise
-        yield done
-
-
-def main(size: int, seed: int, dialect: str = "") -> None:
-    begin, slowest, last, programs = time.monotonic(), 0.0, time.monotonic(), 0
-    half = 0
-    for done in run(size, seed, dialect):
-        now = time.monotonic()
-        slowest, last, programs = max(slowest, now - last), now, programs + 1
-        if done > size / 2 and not half:
-            half = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    growth = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - half
-    seconds = time.monotonic() - begin
-    print(f"{size:,} bytes in {programs:,} programs, {seconds:.0f} s, slowest {slowest:.2f} s, growth {growth} KiB")
+@click.option("--minutes", type=float, default=0.0, help="End each kind after so many minutes, whatever --count says.")
+def main(kinds: Sequence[str], count: int, seed: int, first: int, minutes: float) -> None:
+    """Tries mutated inputs of each KIND, all without one. Status 1 where one was not taken as documented."""
+    faulthandler.enable()
+    sys.dont_write_bytecode = True
+    print(HEAD, flush=True)
+    failed = False
+    for name in kinds or KINDS:
+        with tempfile.TemporaryDirectory(prefix="fuzz_") as folder:
+            verdict = run(KINDS[name], seed, count, Path(folder), first=first, seconds=minutes * 60.0)
+        print(row(verdict), flush=True)
+        for finding in verdict.findings:
+            print(finding, file=sys.stderr, flush=True)
+        failed = failed or bool(verdict.findings)
+    sys.exit(int(failed))
 
 
 if __name__ == "__main__":
-    given = [*sys.argv[1:], *["1000000", "1", ""][len(sys.argv) - 1 :]]
-    main(int(given[0]), int(given[1]), given[2])
+    main()

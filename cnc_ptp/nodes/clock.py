@@ -98,7 +98,8 @@ class ClockNode(PollingNode):
         if handover is not None:
             handover.on_block(PLC, self._on_plc)
         elif free_run:
-            self._plc = self.create_subscription(msg.PlcBlock, block_topic(PLC), take, BLOCKS, raw=True)
+            received = self.readable(block_topic(PLC), take)
+            self._plc = self.create_subscription(msg.PlcBlock, block_topic(PLC), received, BLOCKS, raw=True)
         else:
             self._plc = self.poll(msg.PlcBlock, block_topic(PLC), take, BLOCKS)
 

@@ -14,6 +14,9 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
 
+from cnc_ptp.errors import CncError
+from cnc_ptp.wire.unreadable import UNREADABLE_MESSAGE
+
 Received = Callable[[bytes], None]
 
 
@@ -26,18 +29,44 @@ class PollingNode(Node):
         self._inputs_due = 0.0
         self.input_period = 0.0
         """Seconds between two looks for inputs; 0: at each look, infinite: only with `take_inputs`."""
+        self._unreadable: set[str] = set()
+        """Topics of which a message could not be read."""
         super().__init__(*arguments, **options)
 
     def poll(self, message_type: Any, topic: str, received: Received, quality: QoSProfile) -> Subscription[Any]:
         """A subscription whose messages come as bytes when `take_polled` is called."""
+        received = self.readable(topic, received)
         subscription = self.create_subscription(message_type, topic, received, quality, raw=True)
         self._polled[subscription] = received
         return subscription
 
     def poll_input(self, message_type: Any, topic: str, received: Received, quality: QoSProfile) -> None:
         """As `poll`, for what is not needed at each look; what people write comes slower than looks in free run."""
+        received = self.readable(topic, received)
         subscription = self.create_subscription(message_type, topic, received, quality, raw=True)
         self._inputs_polled[subscription] = received
+
+    def readable(self, topic: str, received: Received) -> Received:
+        """Takes messages as `received`; one that cannot be read (26184) is left out, and the first of a topic told."""
+
+        def take(data: bytes) -> None:
+            try:
+                received(data)
+            except CncError as error:
+                if error.number != UNREADABLE_MESSAGE:
+                    raise
+                self._leave_out(topic, error)
+
+        return take
+
+    def _leave_out(self, topic: str, error: CncError) -> None:
+        if topic not in self._unreadable:
+            self._unreadable.add(topic)
+            self.tell_unreadable(f"{self.get_name()}: topic {topic}: {error.message}")
+
+    def tell_unreadable(self, text: str) -> None:
+        """To those that look at the node's log; units make an event of it."""
+        self.get_logger().warning(f"P-WARN-{UNREADABLE_MESSAGE} {text}")
 
     @property
     def subscriptions(self) -> Iterator[Subscription[Any]]:

@@ -56,6 +56,7 @@ from cnc_ptp.recording.writer import Recording
 from cnc_ptp.wire.block_codec import head_of, with_plain_header
 from cnc_ptp.wire.stamps import Stamps
 from cnc_ptp.wire.ticks import Tick, decode_tick
+from cnc_ptp.wire.unreadable import UNREADABLE_MESSAGE
 
 Sink = Recording | OnDemand
 
@@ -156,6 +157,8 @@ class RecorderNode(PollingNode):
             try:
                 callback(*arguments)
             except CncError as error:
+                if error.number == UNREADABLE_MESSAGE:
+                    raise  # for `readable`: the message is left out
                 if error.number == NOT_WRITTEN and self._recording is not None:
                     self._recording.fail(error, max(0, self._last_tick))
                 else:

@@ -8,6 +8,7 @@ from typing import Any
 
 import yaml
 
+from cnc_ptp import yaml_text
 from cnc_ptp.errors import CncError, nearest_name
 from cnc_ptp.parameters.declare.declarations import Declaration, ParameterValue
 from cnc_ptp.parameters.loader import Changes
@@ -16,7 +17,7 @@ from cnc_ptp.parameters.read.source import Value
 from cnc_ptp.parameters.read.values import BadValue, checked_value
 from cnc_ptp.parameters.view.by_name import UNKNOWN_PARAMETER, parameter_by_name
 from cnc_ptp.parameters.view.machine_view import MachineParameters
-from cnc_ptp.yaml_text import PARSER, WRITER
+from cnc_ptp.yaml_text import WRITER
 
 BAD_CHANGE = 26153
 
@@ -82,7 +83,7 @@ def read_value(text: str) -> Any:
         except ValueError:
             continue
     try:
-        return yaml.load(text, PARSER)
+        return yaml_text.load(text)
     except yaml.YAMLError:
         return None
 
@@ -94,7 +95,7 @@ def refused(text: str, reason: str) -> CncError:
 def changed_text(text: str, changes: Changes) -> str:
     """The text of a machine from which `load_machine` makes what it makes of `text` with `changes`."""
     text, files = split_files(text)
-    content = yaml.load(text, PARSER)
+    content = yaml_text.load(text)
     for unit, values in changes.items():
         section = content.get(f"/{unit}") or content[unit]
         for name, value in values.items():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import reprlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -29,6 +30,8 @@ from cnc_ptp.protocol.run_time import LONGEST_RUN
 
 BAD_SCENARIO = 25101
 CAMS = ("couple_cam", "change_cam")
+LONGEST_NAME = 200
+"""Characters of a unit or command in an error's text."""
 SWITCH_WORDS = {"on": True, "off": False}
 
 
@@ -69,7 +72,7 @@ _Loader.add_implicit_resolver("tag:yaml.org,2002:float", _FLOAT, list("-+0123456
 
 def read_value(text: str) -> Any:
     """A value as in a scenario. Raises yaml.YAMLError."""
-    return yaml.load(text, Loader=_Loader)
+    return yaml_text.load(text, _Loader)
 
 
 def parse_scenario(text: str, file: str, kinds: Mapping[str, str], read: ReadFile | None = None) -> list[Entry]:
@@ -80,7 +83,7 @@ def parse_scenario(text: str, file: str, kinds: Mapping[str, str], read: ReadFil
     """
     try:
         root = yaml.compose(text, _Loader)
-    except yaml.YAMLError as error:
+    except (yaml.YAMLError, UnicodeEncodeError) as error:
         raise ScenarioError(BAD_SCENARIO, f"scenario {file} is not YAML: {error}", "nothing was started") from None
     if root is None:
         return []
@@ -106,8 +109,9 @@ def _entry(node: yaml.Node, kinds: Mapping[str, str], read: ReadFile | None) -> 
         raise CncError(BAD_SCENARIO, "an entry needs at (seconds), to (unit) and do (command)")
     at, to, do = (arguments.pop(name) for name in ("at", "to", "do"))
     if isinstance(at, bool) or not isinstance(at, (int, float)) or not 0.0 <= at <= LONGEST_RUN:
-        raise CncError(BAD_SCENARIO, f"at = {at!r} must be a time in seconds, 0 to {LONGEST_RUN:.0f}")
-    to, do = str(to), str(do)
+        shown = reprlib.repr(at) if isinstance(at, (list, dict)) else repr(at)
+        raise CncError(BAD_SCENARIO, f"at = {shown} must be a time in seconds, 0 to {LONGEST_RUN:.0f}")
+    to, do = str(to)[:LONGEST_NAME], str(do)[:LONGEST_NAME]
     if to not in kinds:
         raise CncError(BAD_SCENARIO, f"unit '{to}' does not exist in the machine. Known: {', '.join(sorted(kinds))}")
     if do in INTERNAL:
@@ -162,14 +166,19 @@ def _construct(node: yaml.Node) -> dict[str, Any]:
     """The keys and values of an entry; empty when it is no mapping. Raises CncError for what YAML cannot construct."""
     if not isinstance(node, yaml.MappingNode):
         return {}
+    try:
+        yaml_text.require_few(node)
+    except (yaml.YAMLError, RecursionError) as error:
+        reason = yaml_text.reason_of(error)
+        raise CncError(BAD_SCENARIO, f"a value cannot be read: {reason}") from None
     keys = [key.value for key, _ in node.value]
     for key in keys:
         if keys.count(key) > 1:
             raise CncError(BAD_SCENARIO, f"'{key}' appears twice in the entry")
     try:
         value = _Loader("").construct_object(node, deep=True)
-    except (yaml.YAMLError, ValueError, TypeError) as error:
-        reason = error.problem if isinstance(error, yaml.MarkedYAMLError) else error
+    except (yaml.YAMLError, *yaml_text.UNFIT) as error:
+        reason = yaml_text.reason_of(error)
         raise CncError(BAD_SCENARIO, f"a value cannot be read: {reason}") from None
     return {str(name): argument for name, argument in value.items()}
 

@@ -42,7 +42,7 @@ from cnc_ptp.recording.reader import (
 from cnc_ptp.recording.selection import NEAR_CYCLES
 from cnc_ptp.recording.statistics import IN_PROGRAM, largest_error
 from cnc_ptp.wire.layout import Bytes, Layout, Records, fixed_layout
-from cnc_ptp.wire.schemas import full_name, parse_schema
+from cnc_ptp.wire.schemas import full_name, recorded_schema
 
 Window = tuple[float, float]
 """Log times in ns."""
@@ -242,7 +242,7 @@ def _layout_of(parts: Sequence[McapIndex], topic: str) -> Layout:
     """As the first file that has the topic says."""
     index, id = next((index, id) for index in parts for id in index.ids_of(topic))
     schema = index.schemas[index.channels[id].schema_id]
-    return fixed_layout(parse_schema(full_name(schema.name), schema.data.decode()))
+    return fixed_layout(recorded_schema(full_name(schema.name), schema.data))
 
 
 def _batches(parts: Sequence[McapIndex], topic: str, size: int, window: Window) -> Iterator[list[Bytes]]:

@@ -23,7 +23,7 @@ from cnc_ptp.recording.origin import notes_of
 from cnc_ptp.recording.parts import files_of
 from cnc_ptp.recording.writer import CHECKPOINT, CHECKPOINT_TEXT, MACHINE_FILE
 from cnc_ptp.wire.layout import Bytes, Layout, Records, fixed_layout
-from cnc_ptp.wire.schemas import full_name, parse_schema
+from cnc_ptp.wire.schemas import full_name, recorded_schema
 
 AXIS_STATE = "cnc_ptp/msg/AxisState"
 SPINDLE_STATE = "cnc_ptp/msg/SpindleState"
@@ -387,7 +387,7 @@ class Reader:
     def _fixed(self, info: TopicInfo, run: MessageRun, record: RawRecord) -> None:
         layout = self._layouts.get(info.topic)
         if layout is None:
-            schema = parse_schema(info.type_name, self._schema(run).data.decode())
+            schema = recorded_schema(info.type_name, self._schema(run).data)
             layout = self._layouts[info.topic] = fixed_layout(schema)
         if run.contents.shape[1] != layout.dtype.itemsize:
             raise self.records.corrupt(
@@ -404,7 +404,7 @@ class Reader:
         self._rows.setdefault(info.topic, []).append(contents)
 
     def _decode(self, info: TopicInfo, run: MessageRun, record: RawRecord) -> None:
-        decoder = self._decoders.decoder_for("cdr", self._schema(run))
+        decoder = self._decoder(info, run, record)
         handler = self._handlers[info.type_name]
         for time, content in zip(run.head["log_time"].tolist(), run.contents, strict=True):
             try:
@@ -412,6 +412,14 @@ class Reader:
             except Exception as error:  # whatever the generated decoder raises on bytes that are no such message
                 reason = f"a message of {info.topic} is not a {info.type_name}: {error!r}"
                 raise self.records.corrupt(record.offset, reason) from error
+
+    def _decoder(self, info: TopicInfo, run: MessageRun, record: RawRecord) -> Callable[[bytes], Any] | None:
+        try:
+            decoder: Callable[[bytes], Any] | None = self._decoders.decoder_for("cdr", self._schema(run))
+        except Exception as error:  # whatever the library raises on a text that defines no message
+            reason = f"the definition of {info.type_name} cannot be read: {error!r}"
+            raise self.records.corrupt(record.offset, reason) from error
+        return decoder
 
     def _schema(self, run: MessageRun) -> Schema:
         return self.names.schemas[self.names.channels[run.channel_id].schema_id]

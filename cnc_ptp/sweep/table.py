@@ -60,12 +60,16 @@ def read_table(file: Path, description: Description, goals: int) -> dict[int, Ro
     except (OSError, arrow.ArrowException) as error:
         reason = f"{file} exists and cannot be read as Parquet: {str(error).splitlines()[0]}"
         raise CncError(NO_SWEEP_TABLE, reason, f"{NOTHING}, give another name") from None
-    found = description_of((table.schema.metadata or {}).get(SWEEP.encode(), b"").decode())
+    found = description_of((table.schema.metadata or {}).get(SWEEP.encode(), b"").decode(errors="replace"))
     if found is None:
         raise CncError(NO_SWEEP_TABLE, f"{file} exists and is no table of a sweep", f"{NOTHING}, give another name")
     require_same(str(file), found, description)
-    rows = zip(*(column.to_pylist() for column in table.columns), strict=True)
-    return {row[0]: _row(row, goals) for row in rows}
+    try:
+        rows = zip(*(column.to_pylist() for column in table.columns), strict=True)
+        return {row[0]: _row(row, goals) for row in rows}
+    except (ValueError, TypeError) as error:
+        reason = f"{file} exists and its rows cannot be read: {error}"
+        raise CncError(NO_SWEEP_TABLE, reason, f"{NOTHING}, give another name") from None
 
 
 def _row(cells: Sequence[Any], goals: int) -> Row:

@@ -30,6 +30,7 @@ from cnc_ptp.wire.form import Form
 from cnc_ptp.wire.layout import NOT_ENCODED, Layout, encode, header_at
 from cnc_ptp.wire.schemas import PRIMITIVES, decoder_of, load_schema
 from cnc_ptp.wire.stamps import Stamps
+from cnc_ptp.wire.unreadable import unreadable
 
 HEAD = struct.Struct("<4xiIIx3xQI")
 """Encapsulation, stamp, length of the empty frame_id, first cycle, count: the start of every block."""
@@ -132,17 +133,36 @@ class BlockCodec:
             raise misfit(block, str(error)) from error
 
     def decode(self, data: bytes) -> Any:
-        """The block of a message."""
+        """The block of a message. Raises CncError 26184 for bytes that are none."""
+        try:
+            return self._decoded(data)
+        except Exception as error:  # whatever the generated decoder raises
+            raise unreadable(self._class.__name__, data, error) from error
+
+    def _decoded(self, data: bytes) -> Any:
         for form in self._of_words.get(words(len(data)), ()):
             fields = form.unpack(data)
             if fields is not None:
                 return self._class(**fields)
         block = self._class(**self._fields(self._decode(data)))
+        if name := self._wrong_column(block):
+            raise ValueError(f"{name} holds {len(getattr(block, name))} values, and count is {block.count}")
         self._learn(block)
         return block
 
     def layout(self, data: bytes) -> Layout:
-        """Where the numbers of a message lie; the same object for messages of the same form."""
+        """Where the numbers of a message lie; the same object for messages of the same form.
+
+        Raises CncError 26006 for columns of other lengths, 26184 for bytes that are no message.
+        """
+        try:
+            return self._found_layout(data)
+        except CncError:
+            raise
+        except Exception as error:  # as in decode
+            raise unreadable(self._class.__name__, data, error) from error
+
+    def _found_layout(self, data: bytes) -> Layout:
         known = self._form_of(data)
         if known is None:
             message = self._decode(data)
@@ -224,14 +244,23 @@ def encode_block(block: CycleBlock, stamps: Stamps) -> bytes:
 
 
 def head_of(data: bytes) -> tuple[int, int, int]:
-    """Stamp in ns, first cycle and count of a block's message whose header has no frame_id, as all of ours."""
-    seconds, nanoseconds, _empty, first_cycle, count = HEAD.unpack_from(data)
+    """Stamp in ns, first cycle and count of a block's message whose header has no frame_id, as all of ours.
+
+    Raises CncError 26184 for one that is too short.
+    """
+    seconds, nanoseconds, _empty, first_cycle, count = _head(data)
     return seconds * 1_000_000_000 + nanoseconds, first_cycle, count
 
 
 def has_plain_header(data: bytes) -> bool:
-    """False for a message of somebody who has given its header a frame_id."""
-    return bool(HEAD.unpack_from(data)[2] == 1)
+    """False for a message of somebody who has given its header a frame_id. Raises CncError 26184."""
+    return bool(_head(data)[2] == 1)
+
+
+def _head(data: bytes) -> tuple[int, ...]:
+    if len(data) < HEAD.size:
+        raise unreadable("of a block", data, f"its head alone has {HEAD.size}")
+    return HEAD.unpack_from(data)
 
 
 def with_plain_header(block_class: type, data: bytes, stamps: Stamps) -> bytes:

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 from cnc_ptp.wire.layout import ENCAPSULATION, HEADER_TYPE, SIZES
 from cnc_ptp.wire.schemas import PRIMITIVES, Field, Schema, load_schema
+from cnc_ptp.wire.unreadable import unreadable
 
 LENGTH = struct.Struct("<I")
 TEXT_AT = 16
@@ -32,6 +33,7 @@ class FixedMessage:
     def __init__(self, type_name: str, decode: Callable[[bytes], Any] | None = None) -> None:
         """`decode`: reads what another encapsulation has (big endian, XCDR2), as an object."""
         self.schema: Schema = load_schema(type_name)
+        self._name = type_name.rpartition("/")[2]
         self._decode = decode
         self._places = list(self._flat(self.schema.fields[1:], ""))
         self._structs = [struct.Struct(self._codes(residue)) for residue in range(WIDEST)]
@@ -54,9 +56,11 @@ class FixedMessage:
         return "".join(codes)
 
     def split(self, data: bytes) -> tuple[str, int]:
-        """The frame_id of a message, and where its header ends; -1 for another encapsulation."""
+        """The frame_id of a message, and where its header ends; -1 for another encapsulation. Raises CncError 26184."""
         if data[:4] != ENCAPSULATION:
             return "", -1
+        if len(data) < TEXT_AT:
+            raise unreadable(self._name, data, f"its header alone has {TEXT_AT}")
         (length,) = LENGTH.unpack_from(data, TEXT_AT - LENGTH.size)
         end = TEXT_AT + length
         return data[TEXT_AT : end - 1].decode(errors="replace"), end
@@ -70,11 +74,17 @@ class FixedMessage:
         }
 
     def read(self, data: bytes) -> tuple[str, dict[str, Any]]:
-        """frame_id and fields of a message."""
+        """frame_id and fields of a message. Raises CncError 26184 for bytes that are none."""
         source, end = self.split(data)
-        if end >= 0:
-            return source, self.fields(data, end)
-        assert self._decode is not None, "another encapsulation"
+        if end < 0 and self._decode is None:
+            raise unreadable(self._name, data, f"their encapsulation is {data[:4].hex()}, not {ENCAPSULATION.hex()}")
+        try:
+            return (source, self.fields(data, end)) if end >= 0 else self._of_another_encapsulation(data)
+        except Exception as error:  # whatever `decode` raises
+            raise unreadable(self._name, data, error) from error
+
+    def _of_another_encapsulation(self, data: bytes) -> tuple[str, dict[str, Any]]:
+        assert self._decode is not None
         message = self._decode(data)
         return message.header.frame_id, {place.name: nested(message, place.name) for place in self._places}
 

@@ -32,6 +32,8 @@ class Form:
         self._struct = struct.Struct("".join(self._codes))
         self._lengths = itemgetter(*lengths, 0)
         self._expected = (*lengths.values(), ENCAPSULATION)
+        has_columns = any(kind == COLUMN and constants[0] for _, kind, _, constants in self._steps)
+        self._count: int | None = getattr(prototype, "count", None) if has_columns else None
 
     @property
     def size(self) -> int:
@@ -116,7 +118,7 @@ class Form:
                 fields[name] = []
             else:
                 fields[name] = self._texts_at(values, begin, constants)
-        return fields
+        return fields if self._count is None or fields["count"] == self._count else None
 
     def _texts_at(self, values: list[Any], begin: int, constants: list[Any]) -> Any:
         """A text, or a list of them if their number comes first."""

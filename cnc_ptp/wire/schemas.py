@@ -125,6 +125,19 @@ def parse_schema(type_name: str, text: str) -> Schema:
     return Schema(name, text, types)
 
 
+def recorded_schema(type_name: str, definition: bytes) -> Schema:
+    """The fields of a type as a recording defines it. Raises CncError 26005."""
+    try:
+        text = definition.decode()
+    except UnicodeDecodeError as error:
+        raise CncError(
+            UNKNOWN_TYPE,
+            f"recording: message type {full_name(type_name)}: its definition is no UTF-8 at byte {error.start}",
+            "the schema is not usable",
+        ) from None
+    return parse_schema(type_name, text)
+
+
 def message_file(type_name: str) -> Path:
     """The .msg file of a type: ament index, then share folder of the environment, then the source tree (own package).
 

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 from cnc_ptp.wire.layout import ENCAPSULATION
 from cnc_ptp.wire.schemas import decoder_of, load_schema
+from cnc_ptp.wire.unreadable import unreadable
 
 _TICK = struct.Struct("<4siIIs3xQI4xq")
 """Encapsulation, stamp, empty frame_id, first cycle, count, scheduled time: a CycleTick message."""
@@ -30,7 +31,14 @@ def encode_tick(first_cycle: int, count: int, scheduled_monotonic_ns: int, stamp
 
 
 def decode_tick(data: bytes) -> Tick:
-    """Of any clock; headers of ours have no frame_id."""
+    """Of any clock; headers of ours have no frame_id. Raises CncError 26184 for bytes that are no tick."""
+    try:
+        return _decoded(data)
+    except Exception as error:  # whatever the generated decoder raises
+        raise unreadable("CycleTick", data, error) from error
+
+
+def _decoded(data: bytes) -> Tick:
     _, seconds, nanoseconds, text_size = _HEAD.unpack_from(data)
     if text_size == 1:
         _, _, _, _, _, first_cycle, count, scheduled = _TICK.unpack_from(data)

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from machine_support import AXIS_COMMANDS, MILL, PTP, ROOT, MachineBench
 
+from bench.fuzzing.mutation import LAUGHS
 from cnc_ptp.channel.program_check import ProgramCheck
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.run_entries import read_entries, read_file
@@ -166,6 +167,14 @@ FAULTS = [
     ),
     ("- {at: 0, at: 1, to: x, do: stop}", "'at' appears twice in the entry"),
     ("- {at: !!int abc, to: x, do: stop}", "a value cannot be read: invalid literal for int() with base 10: 'abc'"),
+    ("- {at: 2001-13-45, to: x, do: stop}", "a value cannot be read: month must be in 1..12"),
+    (f"- {{at: {LAUGHS}, to: x, do: stop}}", "a value cannot be read: its aliases make more than 1000000 values of it"),
+    (f"- {{at: [{'1, ' * 9999}1], to: x, do: stop}}", "at = [1, 1, 1, 1, 1, 1, ...] must be a time in seconds, 0 to 10000000"),
+    ("- {at: &a [*a], to: x, do: stop}", "a value cannot be read: its aliases make more than 1000000 values of it"),
+    (f"- {{at: {'[' * 900}{']' * 900}, to: x, do: stop}}", "a value cannot be read: lists in lists are too deep"),
+    ("- {at: !!bool x, to: x, do: stop}", "a value cannot be read: it has not the form that its tag says"),
+    ("- {at: !!timestamp x, to: x, do: stop}", "a value cannot be read: it has not the form that its tag says"),
+    ("- {at: !!int _, to: x, do: stop}", "a value cannot be read: it has not the form that its tag says"),
     ("- {at: 0, to: x, do: stop, [1]: 2}", "a value cannot be read: found unhashable key"),
     (
         "- {at: 0, to: x, do: !!python/name:os.system }",

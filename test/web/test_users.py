@@ -248,6 +248,10 @@ def test_the_file_has_no_password(users):
     ("content", "reason"),
     [
         ("users: [", "it is no YAML"),
+        ("users: {anna: {role: 2001-13-45, hash: abc}}", "it is no YAML"),
+        ("users: {anna: {role: !!bool x, hash: abc}}", "it is no YAML"),
+        (f"users: {'[' * 3000}", "it is no YAML"),
+        ("users: &a {anna: *a}", "it is no YAML"),
         ("- 1", "it has no users and tokens by name"),
         ("users: [a]", "users are no names with role and hash"),
         ("users: {a: {role: king, hash: x}}", "users: 'a' has no role (viewer, operator, commissioner) or no hash"),

@@ -3,7 +3,16 @@
 import pytest
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.wire.schemas import DIVIDER, Field, full_name, load_schema, parse_schema, schema_text, short_name
+from cnc_ptp.wire.schemas import (
+    DIVIDER,
+    Field,
+    full_name,
+    load_schema,
+    parse_schema,
+    recorded_schema,
+    schema_text,
+    short_name,
+)
 
 
 def test_names():
@@ -60,6 +69,16 @@ def test_state_columns_are_the_fields_of_the_contract(name):
         Field("header", "std_msgs/Header"),
         Field("cycle", "uint64"),
     )
+
+
+def test_a_recorded_definition_that_is_no_text():
+    with pytest.raises(CncError) as error:
+        recorded_schema("nowhere/msg/Thing", b"float64 x\xff")
+    assert str(error.value) == (
+        "P-ERR-26005 recording: message type nowhere/msg/Thing: its definition is no UTF-8 at byte 9; "
+        "the schema is not usable"
+    )
+    assert recorded_schema("nowhere/msg/Thing", b"float64 x").fields == (Field("x", "float64"),)
 
 
 def test_unknown_type_is_refused():

@@ -20,7 +20,7 @@ from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.parameters.view.authority import OF_SERVICES
 from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.protocol.blocks import Command, json_of
-from cnc_ptp.protocol.commands import COMMANDS
+from cnc_ptp.protocol.commands import BAD_ARGUMENT, COMMANDS
 from cnc_ptp.protocol.unit import UPSTREAM_LOST
 
 NEW_RECORDS = QoSProfile(depth=1000, reliability=QoSReliabilityPolicy.RELIABLE)
@@ -63,7 +63,7 @@ class CouplingServices:
     def _couple(self, axis: str, command: str, request: Any, response: Any) -> Any:
         """Passes the command on, or fills in why not."""
         try:
-            arguments = self._arguments(command, request)
+            arguments = self._arguments(axis, command, request)
         except CncError as error:
             return answered(response, error.number, error.message, json_of(error.values))
         if self._node.is_over:
@@ -79,15 +79,15 @@ class CouplingServices:
         self._open.append(Call(asked, response, time.monotonic() + PATIENCE))
         return response
 
-    def _arguments(self, command: str, request: Any) -> dict[str, Any]:
+    def _arguments(self, axis: str, command: str, request: Any) -> dict[str, Any]:
         arguments = given_arguments(COMMANDS["axis"][command], request)
         if "table" not in COMMANDS["axis"][command]:
             return arguments
-        if not len(request.master_points):
+        points = pairs_of(request, f"axis {axis}: {command} refused")
+        if not points:
             return with_table({"file": "", **arguments}, "table")
         arguments.pop("file", None)
-        pairs = zip(request.master_points, request.slave_points, strict=False)
-        return {**arguments, "table": [[master, slave] for master, slave in pairs]}
+        return {**arguments, "table": points}
 
     def _send(self, send: Callable[..., None], response: Any, header: Any) -> None:
         """In place of Service.send_response, which the executor calls after the callback."""
@@ -140,3 +140,12 @@ def answered(response: Any, error_id: int, message: str, values_json: str = "") 
     response.accepted, response.error_id, response.message = error_id == 0, error_id, message
     response.values_json = values_json
     return response
+
+
+def pairs_of(request: Any, where: str) -> list[list[float]]:
+    """The points of a cam in a request. Raises CncError 22001 where a master or slave position is missing."""
+    masters, slaves = len(request.master_points), len(request.slave_points)
+    if masters != slaves:
+        reason = f"{masters} master_points and {slaves} slave_points are no pairs"
+        raise CncError(BAD_ARGUMENT, reason, "nothing was changed", where=where)
+    return [[master, slave] for master, slave in zip(request.master_points, request.slave_points, strict=True)]

@@ -59,6 +59,7 @@ from cnc_ptp.protocol.unit import PLC, Unit
 from cnc_ptp.wire.block_codec import codec_of, encode_block, has_plain_header, head_of
 from cnc_ptp.wire.stamps import Stamps
 from cnc_ptp.wire.ticks import Tick, decode_tick
+from cnc_ptp.wire.unreadable import UNREADABLE_MESSAGE
 
 MACHINE = "machine"
 """The PLC node shows the parameters of the machine."""
@@ -209,7 +210,8 @@ class UnitNode(PollingNode):
         self, message_type: Any, topic: str, take: Callable[[bytes], None], *, wakes: bool
     ) -> Subscription[Any]:
         if wakes:
-            return self.create_subscription(message_type, topic, partial(self._on_message, take), BLOCKS, raw=True)
+            received = self.readable(topic, partial(self._on_message, take))
+            return self.create_subscription(message_type, topic, received, BLOCKS, raw=True)
         return self.poll(message_type, topic, take, BLOCKS)
 
     def set_parameters_atomically(self, parameter_list: Any) -> Any:
@@ -311,6 +313,10 @@ class UnitNode(PollingNode):
         event = Event(self._gate.next_cycle, self.unit.name, severity, error_id, text)
         self._event_publisher.publish(convert.event_to_message(event, self.stamp(event.cycle)))
 
+    def tell_unreadable(self, text: str) -> None:
+        """As an event."""
+        self.tell(Severity.WARNING, UNREADABLE_MESSAGE, text)
+
     def _on_heartbeat(self, message: msg.BlockReport) -> None:
         self._watchdog.heard(message.source)
 
@@ -403,7 +409,8 @@ class UnitNode(PollingNode):
                 self._handover.on_block(master, take, self.look)
                 return
             kind = self._kinds[master]
-            received = partial(self._on_master_message, chain(codec_of(BLOCK_CLASSES[kind]).decode, take))
+            on_message = partial(self._on_master_message, chain(codec_of(BLOCK_CLASSES[kind]).decode, take))
+            received = self.readable(block_topic(master), on_message)
             self.create_subscription(BLOCK_TYPES[kind], block_topic(master), received, REMEMBERED_BLOCKS, raw=True)
 
     def _on_master_message(self, take: Callable[[bytes], None], data: bytes) -> None:

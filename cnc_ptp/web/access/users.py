@@ -16,6 +16,7 @@ import yaml
 from argon2 import PasswordHasher
 from argon2.exceptions import Argon2Error, InvalidHashError
 
+from cnc_ptp import yaml_text
 from cnc_ptp.errors import CncError, nearest_name
 from cnc_ptp.web.access.rights import ROLES
 from cnc_ptp.web.numbers import BAD_USERS
@@ -95,7 +96,7 @@ def read_users(file: Path) -> dict[str, dict[str, User]]:
     """`users` and `tokens` by name. Raises CncError 26246."""
     try:
         mode = file.stat().st_mode
-        content = yaml.safe_load(file.read_text(encoding="utf-8")) or {}
+        content = yaml_text.load(file.read_text(encoding="utf-8")) or {}
     except OSError as error:
         raise unusable(file, str(error.strerror)) from None
     except (UnicodeDecodeError, yaml.YAMLError):

@@ -49,16 +49,19 @@ class ControlTopic:
         self._last = rest if counts else b""
 
 
+def control_reader(kind: str) -> FixedMessage:
+    """Reads the control messages of a kind of object."""
+    of = HLI_CONTROL[kind]
+    return FixedMessage(f"cnc_ptp/msg/{of.__name__}", partial(deserialize_message, message_type=of))
+
+
 class HliTopics:
     """Subscribes to the control topics, publishes the status topics once per block while somebody subscribes."""
 
     def __init__(self, node: PollingNode, hli: Hli) -> None:
         self._hli = hli
         self._publishers: dict[str, Publisher[Any]] = {}
-        readers = {
-            kind: FixedMessage(f"cnc_ptp/msg/{of.__name__}", partial(deserialize_message, message_type=of))
-            for kind, of in HLI_CONTROL.items()
-        }
+        readers = {kind: control_reader(kind) for kind in HLI_CONTROL}
         for name, control in hli.objects.items():
             topic = ControlTopic(control, readers[control.kind])
             node.poll_input(HLI_CONTROL[control.kind], hli_control_topic(name), topic.receive, PLC_INPUT)

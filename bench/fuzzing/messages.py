@@ -1,0 +1,390 @@
+"""Messages below DDS: bytes for the decoders of the nodes, requests of services, and the commands that they stand for.
+
+Whatever a unit refuses leaves its state as it was, to the bit.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import random
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from rclpy.serialization import serialize_message
+
+from bench.fuzzing.engine import Broken, Target
+from bench.fuzzing.mutation import HUGE, mutated_bytes, wild
+from bench.fuzzing.texts import ROOT
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.offline import OfflineMachine
+from cnc_ptp.machine.wiring import build_units, unit_kinds
+from cnc_ptp.nodes.bridge.function_blocks import given_inputs
+from cnc_ptp.nodes.bridge.hli.hli_topics import ControlTopic, control_reader
+from cnc_ptp.nodes.bridge.value_topics import ValueTopics
+from cnc_ptp.nodes.plc_bridge import largest_overrides
+from cnc_ptp.nodes.topics import BLOCK_CLASSES, HLI_CONTROL, PLC_TOPICS, SERVICES, VALUE_TOPICS
+from cnc_ptp.nodes.unit.requests import given_arguments, objection
+from cnc_ptp.parameters import MachineParameters, read_machine
+from cnc_ptp.plc.hli.hli import Hli
+from cnc_ptp.plc.plc_unit import PlcUnit
+from cnc_ptp.protocol.blocks import Command, CycleBlock
+from cnc_ptp.protocol.commands import COMMANDS, Argument
+from cnc_ptp.protocol.unit import A_CLIENT, PLC, Unit
+from cnc_ptp.spindle.spindle_unit import SpindleUnit
+from cnc_ptp.state.machine_state import StateStore
+from cnc_ptp.wire.block_codec import codec_of, encode_block, has_plain_header, head_of
+from cnc_ptp.wire.stamps import Stamps
+from cnc_ptp.wire.ticks import decode_tick, encode_tick
+
+MACHINES = ("config/mill.yaml", "config/lathe.yaml", "config/gantry.yaml")
+STAMPS = Stamps(0, 1_000_000)
+FRESH = 200
+"""Inputs after which a machine is made anew: it may have come into a state in which it refuses nearly everything."""
+
+
+class Running:
+    """An offline machine that runs beside the inputs."""
+
+    def __init__(self, machine: MachineParameters) -> None:
+        self.parameters = machine
+        self.kinds = unit_kinds(machine)
+        self.store = StateStore(machine)
+        self.begin()
+
+    def begin(self) -> None:
+        """A new machine."""
+        self.inputs = 0
+        self.units: Mapping[str, Unit] = build_units(self.parameters, end_when_idle=False)
+        self.machine = OfflineMachine(self.parameters, self.units)
+        self.tick(3)
+
+    def tick(self, blocks: int = 1) -> Mapping[str, CycleBlock]:
+        for _ in range(blocks):
+            outputs = self.machine.tick()
+        return {name: output.block for name, output in outputs.items()}
+
+    def state(self) -> bytes:
+        """Without what the harness takes away, and what the last command has left for its record."""
+        for name, unit in self.units.items():
+            unit.command(Command(name, "?", {}), self.machine.next_cycle)
+            unit.take_events(), unit.take_records()
+            unit._given_by = A_CLIENT  # by whom the last command was
+            if isinstance(unit, SpindleUnit):
+                unit._refused.clear()  # what it tells channels of refusals
+        return self.store.encode(self.machine, with_plc=True)
+
+    @property
+    def plc(self) -> PlcUnit:
+        unit = self.units[PLC]
+        assert isinstance(unit, PlcUnit)
+        return unit
+
+
+# commands and services
+
+
+class Given(NamedTuple):
+    """A command with its arguments; `blocks`: how many are computed then."""
+
+    machine: int
+    unit: str
+    command: str
+    arguments: dict[str, Any]
+    blocks: int
+    by_service: bool
+
+
+def commands(_folder: Path) -> Target:
+    """Of all units with arguments of every kind, as blocks, scenarios and services bring them."""
+    running = [Running(read_machine(ROOT / file)) for file in MACHINES]
+
+    def make(draw: random.Random) -> Given:
+        number = draw.randrange(len(running))
+        unit, kind = draw.choice([*running[number].kinds.items()])
+        command = draw.choice([*COMMANDS[kind]])
+        by_service = command in SERVICES[kind] and draw.random() < 0.3
+        names = [*running[number].kinds]
+        arguments = {
+            name: drawn(argument, names, draw)
+            for name, argument in COMMANDS[kind][command].items()
+            if argument.required or draw.random() < 0.4
+        }
+        if draw.random() < 0.1:
+            arguments[draw.choice(("x", "target", "text", "", *arguments))] = wild(draw)
+        if draw.random() < 0.02:
+            command = draw.choice(("", "step", "command", "__init__", command[:-1], "x" * 1000))
+        return Given(number, unit, command, arguments, draw.choice((0, 0, 1, 5)), by_service)
+
+    def call(given: Given) -> None:
+        here = running[given.machine]
+        here.inputs += 1
+        if here.inputs > FRESH:
+            here.begin()
+        unit, kind = here.units[given.unit], here.kinds[given.unit]
+        arguments, reason = given.arguments, ""
+        if given.by_service and given.command in SERVICES[kind]:
+            request = request_of(SERVICES[kind][given.command], arguments)
+            known = COMMANDS[kind][given.command]
+            arguments, reason = given_arguments(known, request), objection(given.command, known, request)
+        if reason:
+            return
+        before = here.state()
+        record = unit.command(Command(given.unit, given.command, arguments), here.machine.next_cycle)
+        if not record.accepted and here.state() != before:
+            refusal = f"{record.error_id} {record.message[:200]}"
+            raise Broken(f"{given.unit}: {given.command} was refused ({refusal}) and has changed it")
+        error = None if record.accepted else CncError(record.error_id, record.message)
+        json.loads(record.arguments_json)
+        codec_safe(here.tick(given.blocks) if given.blocks else {})
+        if error is not None:
+            raise error
+
+    return Target(make, call)
+
+
+def codec_safe(blocks: Mapping[str, CycleBlock]) -> None:
+    """All that units say can be sent and read."""
+    for block in blocks.values():
+        codec_of(type(block)).decode(encode_block(block, STAMPS))
+
+
+def drawn(argument: Argument, units: list[str], draw: random.Random) -> Any:
+    """A value of an argument: mostly one of its kind."""
+    if draw.random() < 0.1:
+        return wild(draw)
+    if argument.choices:
+        return draw.choice((*argument.choices, "", "x"))
+    if argument.kind == "number":
+        return draw.choice(
+            (
+                0.0,
+                1.0,
+                -1.0,
+                10.0,
+                100.0,
+                1e-9,
+                1e9,
+                draw.uniform(-500, 500),
+                draw.uniform(0, 200),
+                math.nan,
+                math.inf,
+                1e300,
+            )
+        )
+    if argument.kind == "integer":
+        return draw.choice((0, 1, 2, 3, 7, 54, 255, 2**32 - 1, 2**63, -1))
+    if argument.kind == "switch":
+        return draw.random() < 0.5
+    if argument.kind == "rows":
+        return draw.choice(ROWS) if draw.random() < 0.8 else [wild(draw) for _ in range(draw.randrange(4))]
+    if argument.kind == "files":
+        return {draw.choice(("a.nc", "", "../b.nc")): draw.choice(("M29", "", "x" * HUGE))}
+    return draw.choice(
+        (
+            *units,
+            "G1 X10 F500\nM30",
+            "M3 S500\nG4 X1\nM30",
+            "G0 Y5",
+            "getriebe.0.kv",
+            "S-0-0047",
+            "part.nc",
+            "",
+            "x" * 300,
+        )
+    )
+
+
+ROWS: tuple[list[Any], ...] = (
+    [[0, 0], [10, 5.5], [20, 0]], [[0.0, 0.0], [10.0, math.nan]], [[10, 0], [0, 0]], [["x", "y"]], ["x", "y"], ["x"],
+    [[0.5, [1, 2], [0, 0]], [1.0, [2, 3]]], [[0.1, [1.0]], [0.2, [1.1]]],
+    [[100, 1.0, 0.0, 0.0, 1], [110, 1.1, 0.0, 0.0, 1]],
+    [[10**400, 0, 0, 0, 1]], [[1, 1, 1]] * 2000, [[1e308, -1e308], [1.7e308, 1e308]], [1.0, 2.0], [],
+)  # fmt: skip
+
+
+def request_of(service: Any, arguments: Mapping[str, Any]) -> Any:
+    """A request with these fields, as far as its types have them: below DDS there are no others."""
+    request = service.Request()
+    for name, value in arguments.items():
+        for field, content in ((name, value), (f"has_{name}", True)):
+            if hasattr(request, field):
+                try:
+                    setattr(request, field, content)
+                except (AssertionError, TypeError, ValueError, OverflowError, UnicodeError):
+                    continue
+    return request
+
+
+def function_blocks(_folder: Path) -> Target:
+    """Goals of the action function_block, called on the PLC unit of a mill."""
+    from cnc_ptp import action
+    from cnc_ptp.plc.called_blocks import CalledBlocks
+    from cnc_ptp.plc.plcopen.catalogue import BLOCK_TYPES
+
+    running = Running(read_machine(ROOT / MACHINES[0]))
+    blocks: list[CalledBlocks] = []
+
+    def begin() -> None:
+        running.begin()
+        blocks[:] = [CalledBlocks(running.kinds, running.parameters.sets, running.plc.is_lost)]
+        running.plc.outside.append(blocks[0].cycle)
+
+    begin()
+    fields = action.FunctionBlock.Goal.get_fields_and_field_types()
+
+    def make(draw: random.Random) -> tuple[str, str, dict[str, Any]]:
+        unit, kind = draw.choice([(unit, kind) for unit, kind in running.kinds.items() if kind in BLOCK_TYPES])
+        name = draw.choice([*BLOCK_TYPES[kind], "MC_Nothing", ""])
+        chosen = draw.sample([*fields], k=draw.randint(0, 8))
+        return (
+            unit,
+            name,
+            {field: drawn(Argument(OF_FIELD.get(fields[field], "rows")), [*running.kinds], draw) for field in chosen},
+        )
+
+    def call(given: tuple[str, str, dict[str, Any]]) -> None:
+        running.inputs += 1
+        if running.inputs > FRESH:
+            begin()
+        unit, name, values = given
+        goal = request_of(GoalOf, values)
+        try:
+            call = blocks[0].start(unit, name, given_inputs(goal, f"{unit}: {name} refused"))
+            if running.inputs % 3 == 0:
+                blocks[0].cancel(call)
+        finally:
+            codec_safe(running.tick())
+
+    class GoalOf:
+        Request = action.FunctionBlock.Goal
+
+    return Target(make, call)
+
+
+OF_FIELD = {
+    "double": "number",
+    "boolean": "switch",
+    "string": "text",
+    "int32": "integer",
+    "uint32": "integer",
+    "uint8": "integer",
+    "int64": "integer",
+}
+
+
+# bytes
+
+
+def blocks(_folder: Path) -> Target:
+    """Blocks and ticks as they come over a topic or lie in a recording."""
+    running = Running(read_machine(ROOT / MACHINES[0]))
+    running.plc.input(Command("channel", "mdi", {"text": "M3 S500 G1 X10 F500"}))
+    sent = [(type(block), encode_block(block, STAMPS)) for _ in range(40) for block in running.tick().values()]
+    sent += [(type(None), encode_tick(10, 10, 0, 10_000_000))] * 20
+    others = [data for _, data in sent]
+
+    def make(draw: random.Random) -> tuple[type, bytes]:
+        of, data = draw.choice(sent)
+        return of, draw.choice(others) if draw.random() < 0.05 else mutated_bytes(data, draw, others=others)
+
+    def call(given: tuple[type, bytes]) -> None:
+        of, data = given
+        if of is type(None):
+            decode_tick(data)
+            return
+        block = codec_of(of).decode(data)
+        if has_plain_header(data):
+            head_of(data)
+        encode_block(block, STAMPS)
+
+    assert {of for of, _ in sent} == {*BLOCK_CLASSES.values(), type(None)}
+    return Target(make, call)
+
+
+def topics(_folder: Path) -> Target:
+    """Topics of an external PLC: values and HLI, as bytes, with blocks in between."""
+    running = Running(read_machine(ROOT / MACHINES[0]))
+    receivers: dict[str, Callable[[bytes], None]] = {}
+    warned: list[tuple[int, str]] = []
+
+    def begin() -> None:
+        running.begin()
+        plc, parameters = running.plc, running.parameters
+        values = ValueTopics(parameters, plc, lambda number, text: warned.append((number, text)))
+        hli = Hli(plc, kinds=running.kinds, largest_overrides=largest_overrides(parameters), timeout=1.0, numbers={})
+        for unit, kind in running.kinds.items():
+            for name in PLC_TOPICS.get(kind, {}):
+                if name in VALUE_TOPICS:
+                    receivers[f"{unit} {name}"] = values.receiver(unit, name)
+        for unit, control in hli.objects.items():
+            receivers[f"{unit} hli"] = ControlTopic(control, control_reader(control.kind)).receive
+
+    def sent(topic: str, draw: random.Random) -> bytes:
+        unit, name = topic.split()
+        of = HLI_CONTROL[running.kinds[unit]] if name == "hli" else VALUE_TOPICS[name]
+        message = of()
+        fill(message, draw)
+        message.header.frame_id = draw.choice(("plc", "", "other", "x" * draw.choice((1, 7, 300))))
+        return bytes(serialize_message(message))
+
+    def make(draw: random.Random) -> tuple[str, bytes]:
+        topic = draw.choice([*receivers])
+        data = sent(topic, draw)
+        return topic, data if draw.random() < 0.5 else mutated_bytes(data, draw)
+
+    def call(given: tuple[str, bytes]) -> None:
+        running.inputs += 1
+        if running.inputs > FRESH:
+            begin()
+        topic, data = given
+        try:
+            receivers[topic](data)
+        finally:
+            if running.inputs % 4 == 0:
+                codec_safe(running.tick())
+
+    begin()
+    return Target(make, call)
+
+
+def fill(message: Any, draw: random.Random) -> None:
+    """Numbers and switches of a message, those of nested ones too: half of them plausible."""
+    for name, of in message.get_fields_and_field_types().items():
+        value = getattr(message, name)
+        if name == "header":
+            continue
+        if hasattr(value, "get_fields_and_field_types"):
+            fill(value, draw)
+        elif of == "boolean":
+            setattr(message, name, draw.random() < 0.6)
+        elif of in ("double", "float"):
+            setattr(
+                message,
+                name,
+                draw.choice(
+                    (
+                        0.0,
+                        1.0,
+                        50.0,
+                        100.0,
+                        -1.0,
+                        1000.0,
+                        math.nan,
+                        math.inf,
+                        -math.inf,
+                        1e300 if of == "double" else 1e38,
+                    )
+                ),
+            )
+        elif of.startswith(("uint", "int")) and "[" not in of:
+            bits, signed = int(of.removeprefix("u").removeprefix("int")), of.startswith("int")
+            largest = 2 ** (bits - signed) - 1
+            setattr(
+                message,
+                name,
+                draw.choice(
+                    (0, 1, 2, 3, min(largest, 1000), draw.randrange(1, 40), largest, largest - 1, -1 if signed else 0)
+                ),
+            )
