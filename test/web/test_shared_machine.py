@@ -73,12 +73,14 @@ def test_handshakes_of_a_program_that_was_reset():
     async def story(here):
         page = await here.page()
         request = HandshakeRequest(5, 7, "channel", "M", "", 6, 0.0, 1, True)
-        here.hub._tell_request(request)
+        [session] = here.hub.sessions
+        view = session.view
+        view.tell_request(request)
         assert (await page.wait_for("handshake"))["id"] == 7
-        here.hub._drop_handshakes("channel", ChannelBlock(0, 20, done=True))  # from before it
-        here.hub._drop_handshakes("channel", ChannelBlock(6, 20, done=False))
-        assert 7 in here.hub.handshakes
-        here.hub._drop_handshakes("channel", ChannelBlock(6, 20, done=True))
+        view.drop_handshakes("channel", ChannelBlock(0, 20, done=True))  # from before it
+        view.drop_handshakes("channel", ChannelBlock(6, 20, done=False))
+        assert 7 in view.handshakes
+        view.drop_handshakes("channel", ChannelBlock(6, 20, done=True))
         assert await page.wait_for("handshake_done") == {"type": "handshake_done", "id": 7}
 
     run(story)
