@@ -109,8 +109,9 @@ def test_a_reset_withdraws_what_waits(machine, name):
         refused = await page.command("plc", "acknowledge", id=request["id"])
         text = f"plc plc: acknowledge refused: no request {request['id']} waits; nothing was changed. Waiting: none"
         assert (refused["number"], refused["text"]) == (22013, text)
-        await page.state_of("channel", lambda channel: channel.get("active") is False)
-        assert (await page.state_of("x", lambda x: "set_position" in x))["set_position"] == 0.0
+        while here.hub.face.state()["channel"]["active"]:
+            await asyncio.sleep(0.01)
+        assert here.hub.face.state()["x"]["set_position"] == 0.0
         later = await here.page(commands=False)
         assert later.hello["handshakes"] == []
 
