@@ -47,7 +47,9 @@ DISPLAYED = 10.0
 LONGEST_DRAWING = 240.0
 """Seconds until the server has drawn the large program, beside the machine."""
 BETWEEN = 0.4
-PRESSED = "() => document.addEventListener('pointerdown', (event) => { window.pressedAt = performance.timeOrigin + event.timeStamp; }, true)"
+PRESSED = """() => document.addEventListener("pointerdown", (event) => {
+    window.pressedAt = performance.timeOrigin + event.timeStamp;
+}, true)"""
 COUNT_POSITIONS = """(ms) => new Promise((done) => {
     let shown = 0;
     const watch = new MutationObserver(() => { shown += 1; });
@@ -98,10 +100,12 @@ def of_clients(run: WebRun) -> Iterator[Figure]:
     seen = run.clients
     scopes = f"{CLIENTS} clients with a scope of {len(SIGNALS)} signals at 1 kHz (WebSocket)"
     yield Figure(f"{scopes}: samples that came", seen.samples, "")
-    yield Figure("  samples lost", seen.lost, "", goal=0.0, at_most=True)
-    yield Figure("  block lateness of the latest node, p99", seen.lateness_p99_ms, "ms", goal=10.0, at_most=True)
-    yield Figure("  web", seen.core, "cores", goal=0.35, at_most=True)
-    yield Figure("  states with a new position, least", seen.states_per_second, "1/s", goal=20.0)
+    yield Figure("samples of the scopes lost", seen.lost, "", goal=0.0, at_most=True)
+    yield Figure(
+        "block lateness of the latest node meanwhile, p99", seen.lateness_p99_ms, "ms", goal=10.0, at_most=True
+    )
+    yield Figure("web meanwhile", seen.core, "cores", goal=0.35, at_most=True)
+    yield Figure("states with a new position (WebSocket), least", seen.states_per_second, "1/s", goal=20.0)
     yield Figure("blocks lost in the whole run", run.lost, "", goal=0.0, at_most=True)
     yield Figure("samples missing in the recording", run.missing, "", goal=0.0, at_most=True)
     reaction = "override message (WebSocket) to first changed setpoint"
@@ -110,8 +114,9 @@ def of_clients(run: WebRun) -> Iterator[Figure]:
 
 
 def of_pages(run: WebRun, segments: int) -> Iterator[Figure]:
-    yield Figure("jog button (Chromium) to first changed setpoint, median", median(run.presses), "ms")
-    yield Figure("jog button (Chromium) to first changed setpoint, p99", p99(run.presses), "ms", goal=60.0, at_most=True)
+    button = "jog button (Chromium) to first changed setpoint"
+    yield Figure(f"{button}, median", median(run.presses), "ms")
+    yield Figure(f"{button}, p99", p99(run.presses), "ms", goal=60.0, at_most=True)
     yield Figure("positions that a page shows (Chromium)", run.positions, "1/s", goal=20.0)
     yield Figure("all pages, compressed", size_of_pages()[1] / 1e6, "MB", goal=3.0, at_most=True)
     yield Figure("first view, median", median(run.first_views), "s", goal=2.0, at_most=True)
@@ -119,7 +124,7 @@ def of_pages(run: WebRun, segments: int) -> Iterator[Figure]:
     yield Figure(f"{path}: shown, drawn by the server before that", run.drawn / 1e3, "s")
     yield Figure(f"{path}: shown, once it is drawn", run.shown / 1e3, "s", goal=3.0, at_most=True)
     yield Figure(f"{path}: turned, least of {len(run.frames)}", min(run.frames), "frames/s", goal=30.0)
-    yield Figure("  each of so many points is drawn meanwhile", run.point, "")
+    yield Figure("each of so many points is drawn while it is turned", run.point, "")
 
 
 def of_ends(found: list[End]) -> Iterator[Figure]:
@@ -128,17 +133,19 @@ def of_ends(found: list[End]) -> Iterator[Figure]:
         of_kind = [end for end in found if end.kind == kind]
         if not of_kind:
             continue
-        name = f"jog, {kind}, {len(of_kind)} times"
-        yield Figure(f"{name}: stop begins, median", median(end.begins for end in of_kind), "ms")
-        yield Figure("  largest", max(end.begins for end in of_kind), "ms", goal=250.0, at_most=True)
-        yield Figure("  stands, median", median(end.stands for end in of_kind), "ms")
-        yield Figure("  stands, largest", max(end.stands for end in of_kind), "ms")
-        yield Figure("  largest acceleration", max(end.acceleration for end in of_kind), "mm/s²")
-        yield Figure("  largest jerk", max(end.jerk for end in of_kind), "mm/s³")
+        name = f"jog, {kind}"
+        yield Figure(f"{name}: times", len(of_kind), "")
+        yield Figure(f"{name}: stop begins after, median", median(end.begins for end in of_kind), "ms")
+        latest = max(end.begins for end in of_kind)
+        yield Figure(f"{name}: stop begins after, largest", latest, "ms", goal=250.0, at_most=True)
+        yield Figure(f"{name}: stands after, median", median(end.stands for end in of_kind), "ms")
+        yield Figure(f"{name}: stands after, largest", max(end.stands for end in of_kind), "ms")
+        yield Figure(f"{name}: largest acceleration", max(end.acceleration for end in of_kind), "mm/s²")
+        yield Figure(f"{name}: largest jerk", max(end.jerk for end in of_kind), "mm/s³")
         gained = max(end.overshoot for end in of_kind)
-        yield Figure("  velocity gained while it stopped", gained, "mm/s", goal=1e-9, at_most=True)
+        yield Figure(f"{name}: velocity gained in the stop", gained, "mm/s", goal=1e-9, at_most=True)
         again = sum(end.goes_on > 0.0 for end in of_kind)
-        yield Figure("  started again", again, "", goal=0.0, at_most=True)
+        yield Figure(f"{name}: started again", again, "times", goal=0.0, at_most=True)
 
 
 def measure(effort: Effort, segments: int) -> WebRun:

@@ -237,5 +237,3 @@ async def reactions(client: Client, commands: int, observer: Observer) -> list[f
     await client.command("x", "set_override", percent=100.0)
     await client.command("x", "halt")
     return found
-
-

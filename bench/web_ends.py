@@ -159,7 +159,9 @@ def signal_all(processes: list[psutil.Process], number: signal.Signals) -> None:
 def evaluated(kind: str, observer: Observer, died: int, velocity: float) -> End:
     """Times of cycles count from the publication of their block on."""
     blocks = observer.since(died - 50_000_000)  # with the ramp's beginning in any case
-    missing = [later.cycle for earlier, later in pairwise(blocks) if later.cycle != earlier.cycle + len(earlier.velocities)]
+    missing = [
+        later.cycle for earlier, later in pairwise(blocks) if later.cycle != earlier.cycle + len(earlier.velocities)
+    ]
     if missing:
         raise RuntimeError(f"the observer lacks blocks before cycles {missing}")
     speeds = np.abs(np.concatenate([block.velocities for block in blocks]))

@@ -208,4 +208,3 @@ class Hub:
 
 def server_failed(error: Exception) -> CncError:
     return CncError(GONE, f"the server has failed: {error!r}", "the machine continues")
-

@@ -113,9 +113,7 @@ class DrawingOffice:
     def _started(self) -> ProcessPoolExecutor:
         if self._pool is None:
             shared = (self._cancelled,)
-            self._pool = ProcessPoolExecutor(
-                1, mp_context=self._context, initializer=Cancelled.share, initargs=shared
-            )
+            self._pool = ProcessPoolExecutor(1, mp_context=self._context, initializer=Cancelled.share, initargs=shared)
         return self._pool
 
     def prepare(self) -> None:
