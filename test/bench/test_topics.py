@@ -82,11 +82,13 @@ def test_pages_beside_the_graph(monkeypatch: pytest.MonkeyPatch) -> None:
     if reason := web.why_no_browser():
         pytest.skip(reason)
     monkeypatch.setenv("ROS_DOMAIN_ID", "0")  # it takes a domain of its own, which ends with the test
-    figures = {figure.name.strip(): figure for figure in web.figures(SMALLEST, print)}
-    assert figures["samples lost"].value == figures["samples missing in the recording"].value == 0.0
-    assert figures["started again"].value == figures["velocity gained while it stopped"].value == 0.0
+    figures = {figure.name: figure for figure in web.figures(SMALLEST, print)}
+    assert figures["samples of the scopes lost"].value == figures["samples missing in the recording"].value == 0.0
+    for kind in web.KINDS:
+        assert figures[f"jog, {kind}: times"].value == 1
+        assert figures[f"jog, {kind}: started again"].value == 0
+        assert figures[f"jog, {kind}: velocity gained in the stop"].value == 0.0
     assert figures["backplot of 1000 segments: shown, once it is drawn"].value > 0.0
-    assert sum(name.startswith("jog, ") for name in figures) == 3
 
 
 def test_figures_of_a_watched_run() -> None:
