@@ -48,13 +48,13 @@ def waiting(browser, programs, tmp_path_factory):
 @pytest.fixture
 def tuned(browser, programs):
     """Its machine file is in the folder of the test."""
-    yield from pages_of(browser, programs, shutil.copy(MILL, programs / "mill.yaml"))
+    yield from pages_of(browser, programs, str(shutil.copy(MILL, programs / "mill.yaml")))
 
 
 def pages_of(browser, programs, machine):
     """Opens pages of an offline machine; `hub` and `server` are those of the pages."""
     hub = Hub(
-        lambda: offline_face(machine), name="machine", folder=ProgramFolder(str(programs)), machine_file=str(machine)
+        lambda: offline_face(machine), name="machine", folder=ProgramFolder(str(programs)), machine_file=machine
     )
     with InThread(Server(hub, Access(None), Names()).app) as server:
         pages = []
