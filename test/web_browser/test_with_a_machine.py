@@ -53,9 +53,7 @@ def tuned(browser, programs):
 
 def pages_of(browser, programs, machine):
     """Opens pages of an offline machine; `hub` and `server` are those of the pages."""
-    hub = Hub(
-        lambda: offline_face(machine), name="machine", folder=ProgramFolder(str(programs)), machine_file=machine
-    )
+    hub = Hub(lambda: offline_face(machine), name="machine", folder=ProgramFolder(str(programs)), machine_file=machine)
     with InThread(Server(hub, Access(None), Names()).app) as server:
         pages = []
 

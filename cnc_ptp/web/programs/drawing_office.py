@@ -81,14 +81,15 @@ class DrawingOffice:
                 del self._orders[next(iter(self._orders))]
         order = self._orders[key]
         try:
-            return await asyncio.shield(order.task)
+            drawn = await asyncio.shield(order.task)
         except Exception:  # whatever has failed may be tried again
             if self._orders.get(key) is order:
                 del self._orders[key]
-            if order.is_superseded:
-                reason = f"backplot of {drawing.file}: the channel has another program"
-                raise CncError(NOT_DRAWN, reason, NOTHING_SHOWN) from None
             raise
+        if order.is_superseded:
+            reason = f"backplot of {drawing.file}: the channel has another program"
+            raise CncError(NOT_DRAWN, reason, NOTHING_SHOWN)
+        return drawn
 
     def _cancel(self, channel: str) -> None:
         """What is drawn of a channel, or waits for that."""
