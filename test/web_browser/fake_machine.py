@@ -346,12 +346,15 @@ class Fake:
         elif command == "feed_hold":
             state["state"] = "hold" if arguments["enabled"] else "running"
         elif command == "home":
-            asyncio.get_running_loop().call_later(0.1, state.update, {"state": "Homing"})
-            asyncio.get_running_loop().call_later(0.6, state.update, {"state": "Standstill"})
+            asyncio.get_running_loop().call_later(0.1, state.update, {"state": "Homing"})  # until `arrive`
         elif command == "reset" and unit == "channel":
             state |= {"state": "ready", "active": False, "line": 0}
         elif command == "emergency_stop":
             state["emergency_stop"] = arguments["enabled"]
+
+    async def arrive(self, axis: str) -> None:
+        """Its homing ends."""
+        self.state[axis] |= {"state": "Standstill"}
 
     async def raise_alarm(self, text: str, *, severity: str = "error", number: int = 70100, source: str = "x") -> None:
         self.alarm += 1

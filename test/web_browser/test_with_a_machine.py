@@ -7,7 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from web_browser_support import InThread, open_page, until
+from web_browser_support import PATIENCE, InThread, open_page, until
 from web_support import EXAMPLES, MILL, ROOT, waiting_mill
 
 from cnc_ptp.parameters import read_machine
@@ -109,10 +109,10 @@ def test_a_held_button_moves_the_axis_and_its_end_stops_it(mill):
     page.mouse.up()
 
 
-async def watch_velocity(hub, samples, seconds):
-    """Time (s, of this computer) and set velocity of x, every few ms."""
-    end = time.monotonic() + seconds
-    while time.monotonic() < end:
+async def watch_velocity(hub, samples):
+    """Time (s, of this computer) and set velocity of x, every few ms, until it stands."""
+    end = time.monotonic() + PATIENCE / 1000
+    while time.monotonic() < end and not (samples and samples[-1][1] == 0.0):
         samples.append((time.monotonic(), abs(hub.face.state()["x"]["set_velocity"])))
         await asyncio.sleep(0.005)
 
@@ -132,11 +132,11 @@ def jog_until_it_moves(page):
 
 @pytest.mark.parametrize("how", ["crash", "close"])
 def test_an_axis_stops_when_its_page_dies(browser, mill, how):
-    """Of the time until it begins 0.2 s are the patience of the axis; 250 ms where nothing else runs."""
+    """Of the time until it begins 0.2 s are the patience of the axis; `bench web` measures it."""
     page = open_page(browser, mill.server.url, command=True)
     jog_until_it_moves(page)
     samples = []
-    watching = mill.server.begin(watch_velocity(mill.hub, samples, 1.5))
+    watching = mill.server.begin(watch_velocity(mill.hub, samples))
     page.wait_for_timeout(100)
     died = time.monotonic()
     if how == "crash":
@@ -144,12 +144,13 @@ def test_an_axis_stops_when_its_page_dies(browser, mill, how):
             page.goto("chrome://crash", timeout=500)
     else:
         page.close()
-    watching.result(10.0)
+    watching.result(2 * PATIENCE / 1000)
     held = samples[0][1]
     slower = next(at for at, velocity in samples if velocity < held - 1e-6)
-    print(f"{how}: the stop begins after {1000 * (slower - died):.0f} ms")
-    assert 0.0 < slower - died < 0.8
+    assert held > 10 and slower > died
     assert samples[-1][1] == 0.0
+    speeds = [velocity for _, velocity in samples]
+    assert speeds == sorted(speeds, reverse=True)
 
 
 def test_manual_data_input_moves_and_a_refusal_is_shown(mill):
