@@ -20,7 +20,8 @@ class PageSocket(web.WebSocketResponse):
 
     def __init__(self, *, heartbeat: float) -> None:
         """`heartbeat`: seconds between two pings, each to be answered within half of them."""
-        super().__init__(max_msg_size=LARGEST_MESSAGE, heartbeat=heartbeat, autoping=True)
+        limit = LARGEST_MESSAGE + 1  # aiohttp refuses frames of its limit, too
+        super().__init__(max_msg_size=limit, heartbeat=heartbeat, autoping=True)
 
     async def close(self, *, code: int = WSCloseCode.OK, message: bytes = b"", drain: bool = True) -> bool:
         """As of aiohttp, which closes by itself when a message is too large."""
