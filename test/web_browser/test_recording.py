@@ -1,5 +1,7 @@
 """Pages of a recording, on the true server: each page has a time of its own."""
 
+from concurrent.futures import ThreadPoolExecutor
+
 import pytest
 from web_browser_support import InThread, open_page, until
 from web_support import EXAMPLES, MILL
@@ -18,9 +20,14 @@ SLIDER = "document.querySelector('.recording-bar input')"
 @pytest.fixture(scope="module")
 def recording(tmp_path_factory):
     file = tmp_path_factory.mktemp("recorded") / "run.mcap"
-    with Machine.offline(MILL, record=file) as m:
-        m.channel.load("part.nc", text="G1 X40 F240\nM30\n")  # 10 s
-        m.channel.start().wait(timeout=60)
+
+    def record():
+        with Machine.offline(MILL, record=file) as m:
+            m.channel.load("part.nc", text="G1 X40 F240\nM30\n")  # 10 s
+            m.channel.start().wait(timeout=60)
+
+    with ThreadPoolExecutor(1) as thread:  # in this one the loop of the browser runs
+        thread.submit(record).result()
     return str(file)
 
 
