@@ -36,7 +36,7 @@ from bench.graph import missing_samples  # noqa: E402
 from bench.graph_run import process_seconds  # noqa: E402
 from bench.jobs import MACHINE  # noqa: E402
 from bench.plc import p99  # noqa: E402
-from bench.web_clients import CLIENTS, PATIENCE, SIGNALS, ClientRun, Observer, watch  # noqa: E402
+from bench.web_clients import CLIENTS, SIGNALS, ClientRun, Observer, watch  # noqa: E402
 from bench.web_ends import KINDS, End, ends, own_browser, press  # noqa: E402
 
 COMMANDS, PRESSES, ENDS, VIEWS = 200, 100, 100, 5
@@ -44,6 +44,8 @@ SEGMENTS = 150_000
 NICENESS = 10
 DISPLAYED = 10.0
 """Seconds for which positions are counted."""
+LONGEST_START = 120.0
+"""Seconds until the graph runs, and until it has ended."""
 LONGEST_DRAWING = 240.0
 """Seconds until the server has drawn the large program, beside the machine."""
 BETWEEN = 0.4
@@ -168,7 +170,7 @@ def measure(effort: Effort, segments: int) -> WebRun:
             run = session(port, psutil.Process(graph.pid), effort)
         finally:
             graph.terminate()
-            graph.wait(PATIENCE)
+            graph.wait(LONGEST_START)
             rclpy.try_shutdown()
         if found := re.search(r"lost (\d+), computed twice", told.read_text()):
             run.lost = int(found[1])
@@ -186,7 +188,7 @@ def free_port() -> int:
 
 def wait_for_pages(graph: subprocess.Popen[bytes], told: Path) -> None:
     """Its server has told its address."""
-    deadline = time.monotonic() + PATIENCE
+    deadline = time.monotonic() + LONGEST_START
     while "pages: " not in told.read_text():
         if graph.poll() is not None or time.monotonic() > deadline:
             raise RuntimeError(f"no pages: {told.read_text()}")
