@@ -99,7 +99,7 @@ class Server:
             raise CncError(
                 TOO_MANY_SESSIONS, f"the limit of open pages is reached, {MOST_SESSIONS}", f"{NOTHING}; close one"
             )
-        socket = PageSocket(heartbeat=SILENCE)
+        socket = PageSocket(request, heartbeat=SILENCE)
         await socket.prepare(request)
         if await self._is_own_page(socket, login):
             session = Session(self.hub, socket, self.access, login, number=next(NUMBERS))
