@@ -107,7 +107,8 @@ def test_a_message_of_more_than_a_mebibyte(size):
         assert [(error["number"], error["text"]) for error in errors] == [(26205, text)]
         assert errors[0]["remedy"].startswith("Load a large program from the program folder")
         assert code == 1009
-        assert (await other.ask("take_command"))["ok"]  # of the page that was cut off it is free
+        await other.wait_for("operator", lambda message: message["holder"] is None)
+        assert (await other.ask("take_command"))["ok"]
 
     run(story)
 
