@@ -33,7 +33,8 @@ async def begin(page, text):
     assert (await page.command("plc", "auto_acknowledge", enabled=False))["ok"]
     assert (await page.ask("scope", signals=["x.set_position"], bits=64))["ok"]
     assert (await page.ask("load", name="part.nc", text=text))["ok"]
-    assert (await page.command("channel", "start"))["ok"]
+    started = await page.command("channel", "start")
+    assert started["ok"], started
 
 
 async def first_motion(page):
