@@ -37,7 +37,7 @@ from bench.graph_run import process_seconds  # noqa: E402
 from bench.jobs import MACHINE  # noqa: E402
 from bench.plc import p99  # noqa: E402
 from bench.web_clients import CLIENTS, SIGNALS, ClientRun, Observer, watch  # noqa: E402
-from bench.web_ends import KINDS, End, ends, own_browser, press  # noqa: E402
+from bench.web_ends import KINDS, End, ends, limits_of_ramps, own_browser, press  # noqa: E402
 
 COMMANDS, PRESSES, ENDS, VIEWS = 200, 100, 100, 5
 SEGMENTS = 150_000
@@ -131,6 +131,7 @@ def of_pages(run: WebRun, segments: int) -> Iterator[Figure]:
 
 def of_ends(found: list[End]) -> Iterator[Figure]:
     """From the end of a jogging page: until the stop begins, until the axis stands, and whether all were ramps."""
+    most_acceleration, most_jerk = limits_of_ramps()
     for kind in KINDS:
         of_kind = [end for end in found if end.kind == kind]
         if not of_kind:
@@ -142,8 +143,10 @@ def of_ends(found: list[End]) -> Iterator[Figure]:
         yield Figure(f"{name}: stop begins after, largest", latest, "ms", goal=250.0, at_most=True)
         yield Figure(f"{name}: stands after, median", median(end.stands for end in of_kind), "ms")
         yield Figure(f"{name}: stands after, largest", max(end.stands for end in of_kind), "ms")
-        yield Figure(f"{name}: largest acceleration", max(end.acceleration for end in of_kind), "mm/s²")
-        yield Figure(f"{name}: largest jerk", max(end.jerk for end in of_kind), "mm/s³")
+        acceleration = max(end.acceleration for end in of_kind)
+        yield Figure(f"{name}: largest acceleration", acceleration, "mm/s²", goal=most_acceleration, at_most=True)
+        jerk = max(end.jerk for end in of_kind)
+        yield Figure(f"{name}: largest jerk", jerk, "mm/s³", goal=most_jerk, at_most=True)
         gained = max(end.overshoot for end in of_kind)
         yield Figure(f"{name}: velocity gained in the stop", gained, "mm/s", goal=1e-9, at_most=True)
         again = sum(end.goes_on > 0.0 for end in of_kind)

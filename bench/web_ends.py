@@ -17,7 +17,9 @@ import numpy as np
 import psutil
 from web_browser_support import CHROMIUM, FLAGS, open_page, until
 
+from bench.jobs import MACHINE
 from bench.web_clients import Observer
+from cnc_ptp.parameters import read_machine
 
 SEED = 20
 KINDS = ("browser killed", "browser frozen", "socket stalled")
@@ -27,6 +29,8 @@ STALL = 1.0
 """Seconds after which a browser or a socket goes on: what is late must start nothing."""
 SETTLING = 0.5
 CYCLE = 1e-3
+DIGITS = 3
+"""Of accelerations and jerks: further ones are rounding errors of velocities."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +47,12 @@ class End:
     """Velocity that it gained while it stopped; above 0 it was no ramp down."""
     goes_on: float
     """Largest velocity after the standstill."""
+
+
+def limits_of_ramps() -> tuple[float, float]:
+    """The largest acceleration (mm/s²) and jerk (mm/s³) of a jog of x and of its stop, by the machine file."""
+    x = read_machine(MACHINE).axes["x"]
+    return max(x.acceleration, x.deceleration), x.jerk
 
 
 class Proxy:
@@ -176,8 +186,8 @@ def evaluated(kind: str, observer: Observer, died: int, velocity: float) -> End:
         kind,
         float(times[slower]),
         float(times[stands]),
-        float(np.max(np.abs(acceleration))),
-        float(np.max(np.abs(np.diff(acceleration)))) / CYCLE,
+        round(float(np.max(np.abs(acceleration))), DIGITS),
+        round(float(np.max(np.abs(np.diff(acceleration)))) / CYCLE, DIGITS),
         max(0.0, float(np.max(np.diff(speeds[slower : stands + 1]), initial=0.0))),
         float(np.max(speeds[stands:])),
     )

@@ -88,6 +88,7 @@ def test_pages_beside_the_graph(monkeypatch: pytest.MonkeyPatch) -> None:
         assert figures[f"jog, {kind}: times"].value == 1
         assert figures[f"jog, {kind}: started again"].value == 0
         assert figures[f"jog, {kind}: velocity gained in the stop"].value == 0.0
+        assert figures[f"jog, {kind}: largest acceleration"].met and figures[f"jog, {kind}: largest jerk"].met
     assert figures["backplot of 1000 segments: shown, once it is drawn"].value > 0.0
 
 
