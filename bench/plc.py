@@ -32,7 +32,8 @@ PERIOD = 0.001
 LEAST_RATE = 0.999 / PERIOD
 """1/s: the sender ends within the last period, so that it is never quite 1 kHz."""
 WARM_UP = 15.0
-"""Seconds of messages before the memory is read: what keeps the last 1000 commands of each unit has them then."""
+"""Seconds of messages before the memory is read, at most as many as after that: what keeps the last 1000 commands of
+each unit has them then."""
 PAUSE = 0.0537
 """Seconds between two calls: beats against the blocks, so that calls come at any moment of a block."""
 SETTLING = 0.3
@@ -133,15 +134,15 @@ def flood(plc: Plc, graph: psutil.Process, seconds: float, run: PlcRun) -> None:
     """One message a millisecond on each topic, by a process that does nothing else; the last value must hold."""
     nodes = {graph_run.node_name(graph_run.words_of(each)): each for each in graph_run.nodes_of(graph)}
     family = {**nodes, graph_run.SUPERVISOR: graph}
-    run.sent = round((WARM_UP + seconds) / PERIOD)
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as sender:
-        flooding = sender.submit(send, run.sent)
-        plc.pause(WARM_UP)
+        warm_up = min(WARM_UP, seconds)
+        flooding = sender.submit(send, warm_up + seconds)
+        plc.pause(warm_up)
         used = [memory_of(family)]
         for _ in range(2):
             plc.pause(0.5 * seconds)
             used.append(memory_of(family))
-        run.seconds, run.core_seconds, run.largest_lag, last = plc.result(flooding, 10.0 * seconds + PATIENCE)
+        run.sent, run.seconds, run.core_seconds, run.largest_lag, last = plc.result(flooding, seconds + 10.0 * PATIENCE)
     run.growth_mb = [{name: now[name] - before[name] for name in family} for before, now in pairwise(used)]
     with suppress(TimeoutError):  # a value that was lost is a figure, too
         plc.wait(lambda: all(plc.override_of(unit) == last for unit in FLOODED))
@@ -156,12 +157,12 @@ def memory_of(family: Mapping[str, psutil.Process]) -> dict[str, float]:
     return {name: float(each.memory_full_info().uss) / 1e6 for name, each in family.items()}
 
 
-def send(messages: int) -> tuple[float, float, float, float]:
-    """In its own process: seconds that so many messages on each topic took, those of a core, the largest delay of one,
-    and the last value.
+def send(duration: float) -> tuple[int, float, float, float, float]:
+    """In its own process, for so many seconds: messages on each topic, seconds that they took, those of a core, the
+    largest delay of one, and the last value.
 
     They are serialised before, so that what is measured is the machine and not a client in Python. It has the priority
-    of a usual process: where processors are short, it falls behind, and the machine does not.
+    of a usual process: where processors are short, it sends less, and the machine does not fall behind.
     """
     import rclpy
     from rclpy.duration import Duration
@@ -179,18 +180,19 @@ def send(messages: int) -> tuple[float, float, float, float]:
     texts = [serialize_message(msg.Override(valid=True, percent=percent)) for percent in percents]
     while not all(writer.get_subscription_count() for writer in writers):
         time.sleep(0.01)
-    begin, of_core, lag = time.monotonic(), time.process_time(), 0.0
-    for number in range(messages):
+    begin, of_core, lag, sent = time.monotonic(), time.process_time(), 0.0, 0
+    while sent < duration / PERIOD and time.monotonic() < begin + duration:
         for writer in writers:
-            writer.publish(texts[number % 41])
-        left = begin + (number + 1) * PERIOD - time.monotonic()
+            writer.publish(texts[sent % 41])
+        sent += 1
+        left = begin + sent * PERIOD - time.monotonic()
         lag = max(lag, -left)
         time.sleep(max(0.0, left))
     seconds, of_core = time.monotonic() - begin, time.process_time() - of_core
     for writer in writers:  # the newest value is on its way until then; it is lost with its writer
         writer.wait_for_all_acked(Duration(seconds=PATIENCE))
     node.destroy_node()
-    return seconds, of_core, lag, percents[(messages - 1) % 41]
+    return sent, seconds, of_core, lag, percents[(sent - 1) % 41]
 
 
 class Plc:

@@ -72,7 +72,7 @@ class DataRoutes:
         return web.json_response({"spindle": spindle, "gears": gears}, headers=NOT_STORED)
 
     async def _recorded(self, request: web.Request) -> web.StreamResponse:
-        """`?signals=x.set_position,…&from=s&to=s&points=N`: a frame as of the scope."""
+        """`?signals=x.set_position,…&from=s&to=s&points=N`: a frame as of the scope, `&bits=32` with half the bytes."""
         self._access.login_of(request)
         face, query = self._hub.require_face(), request.query
         if not isinstance(face, RecordedFace):
@@ -81,7 +81,8 @@ class DataRoutes:
         signals = read_signals(query.get("signals", "").split(","), face.kinds)
         begin, end = number(query.get("from", "0")), number(query.get("to", str(face.end)))
         points = int(number(query.get("points", "10000")))
-        data = await asyncio.to_thread(face.samples, signals, begin, end, max(1, points))
+        bits = 32 if query.get("bits") == "32" else 64
+        data = await asyncio.to_thread(face.file.samples, signals, begin, end, max(1, points), bits=bits)
         return web.Response(body=data, content_type="application/octet-stream", headers=NOT_STORED)
 
     async def _snapshot(self, request: web.Request) -> web.StreamResponse:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+TOO_LARGE_MESSAGE = 26205
 NO_AIOHTTP = 26230
 NO_PORT = 26231
 NOT_SECURED = 26232

@@ -8,12 +8,10 @@ from typing import Any, Protocol
 
 from cnc_ptp.web.access.command_right import CommandRight
 from cnc_ptp.web.commissioning.tasks import Tasks
-from cnc_ptp.web.faces.alarms import Alarms
 from cnc_ptp.web.faces.face import Face
-from cnc_ptp.web.faces.offset_table import OffsetTable
-from cnc_ptp.web.faces.program_watch import ProgramWatch
 from cnc_ptp.web.faces.scope import Stream
 from cnc_ptp.web.programs.programs import ProgramFolder
+from cnc_ptp.web.view import View
 
 
 class Shared(Protocol):
@@ -21,10 +19,7 @@ class Shared(Protocol):
 
     face: Face | None
     right: CommandRight
-    alarms: Alarms
     folder: ProgramFolder
-    programs: ProgramWatch
-    tables: dict[str, OffsetTable]
     tasks: Tasks
 
     def require_face(self) -> Face: ...
@@ -47,6 +42,7 @@ class Page(Protocol):
     user: str
     role: str
     number: int
+    view: View | None
     scope: Stream | None
 
     @property

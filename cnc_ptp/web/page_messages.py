@@ -15,6 +15,7 @@ from cnc_ptp.web.jog import Jogs
 from cnc_ptp.web.numbers import A_RECORDING, BAD_MESSAGE
 from cnc_ptp.web.page import Page
 from cnc_ptp.web.protocol import NOTHING, Message, answer, field
+from cnc_ptp.web.view import View
 
 Answering = Awaitable[Message]
 
@@ -103,7 +104,7 @@ class PageMessages:
 
     def _offsets(self, message: Message) -> None:
         """The zero offsets of a channel."""
-        tables = self._hub.tables
+        tables = self._view().tables
         channel = field(message, "channel", "text", next(iter(tables), "channel"))
         if channel not in tables:
             raise unknown_unit(channel, tables, "channel")
@@ -140,10 +141,16 @@ class PageMessages:
 
     def _recording(self, message: Message) -> RecordedFace:
         """Raises CncError 26248 for a machine that runs."""
-        face = self._hub.require_face()
+        face = self._view().face
         if not isinstance(face, RecordedFace):
             raise CncError(A_RECORDING, f"{message['type']}: this machine runs, it is no recording", NOTHING)
         return face
+
+    def _view(self) -> View:
+        """What the page sees. Raises CncError 26171, 26244 while there is no machine."""
+        self._hub.require_face()
+        assert self._session.view is not None
+        return self._session.view
 
     # the command right
 
@@ -173,12 +180,13 @@ class PageMessages:
 
     def _acknowledge(self, message: Message) -> None:
         require_role("acknowledge", self._session.user, self._session.role, "operator")
-        numbers = self._hub.alarms.acknowledge(field(message, "alarm", "integer", None), self._session.user)
+        view = self._view()
+        numbers = view.alarms.acknowledge(field(message, "alarm", "integer", None), self._session.user)
         self._session.send(answer(message))
         if numbers:
             shown = ", ".join(map(str, numbers[:10])) + (" …" if len(numbers) > 10 else "")
             self._hub.note(f"{self._session.user}: alarms {shown} acknowledged")
-        self._hub.to_all({"type": "acknowledged", "alarms": numbers, "user": self._session.user})
+        view.to_all({"type": "acknowledged", "alarms": numbers, "user": self._session.user})
 
     def _ping(self, message: Message) -> None:
         """For the page, to know how far the server is, and for the server, to know how late jogs come."""

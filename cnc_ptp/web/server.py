@@ -14,6 +14,7 @@ from cnc_ptp.web.access.logins import Login
 from cnc_ptp.web.data_routes import DataRoutes
 from cnc_ptp.web.hub import Hub
 from cnc_ptp.web.numbers import BAD_MESSAGE, TOO_MANY_SESSIONS
+from cnc_ptp.web.page_socket import PageSocket
 from cnc_ptp.web.programs.program_routes import ProgramRoutes
 from cnc_ptp.web.protocol import LARGEST_MESSAGE, NOTHING, error_fields, field, frame, read_body, read_message
 from cnc_ptp.web.session import Session
@@ -98,7 +99,7 @@ class Server:
             raise CncError(
                 TOO_MANY_SESSIONS, f"the limit of open pages is reached, {MOST_SESSIONS}", f"{NOTHING}; close one"
             )
-        socket = web.WebSocketResponse(max_msg_size=LARGEST_MESSAGE, heartbeat=SILENCE, autoping=True)
+        socket = PageSocket(request, heartbeat=SILENCE)
         await socket.prepare(request)
         if await self._is_own_page(socket, login):
             session = Session(self.hub, socket, self.access, login, number=next(NUMBERS))

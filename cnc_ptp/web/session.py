@@ -22,6 +22,7 @@ from cnc_ptp.web.page import Shared
 from cnc_ptp.web.page_messages import PageMessages
 from cnc_ptp.web.protocol import Message, error_fields, frame, read_message, refusal
 from cnc_ptp.web.rate import Rate
+from cnc_ptp.web.view import View
 
 MOST_PER_SECOND = 200
 BURST = 400
@@ -45,6 +46,8 @@ class Session:
         self._access, self.login = access, login
         self.is_behind = True
         """It gets the whole state next."""
+        self.view: View | None = None
+        """What it sees; None until there is a machine."""
         self.scope: Stream | None = None
         self._is_ending = self._is_cut_off = False
         self._socket = socket
@@ -121,6 +124,8 @@ class Session:
             if not self._rate.permits():
                 await self._refuse_rate()
                 return
+            if received.type is WSMsgType.ERROR:
+                return  # its socket has said why
             if received.type is WSMsgType.TEXT:
                 self._take(received.data)
             else:

@@ -92,6 +92,51 @@ def test_a_machine_is_operated_and_its_server_killed(ros_domain, machine, folder
     assert recorded.states["/x/state"]["set_velocity"][-1] == 0.0
 
 
+def test_a_program_waits_for_a_page_and_a_page_takes_a_snapshot(ros_domain, machine, folder):
+    """M6 to the page and its acknowledgement back over the graph; a reset; then the last seconds as a recording."""
+    port = unused_port()
+    recording, snapshot = folder / "waits.mcap", folder / "snapshot.mcap"
+    program = "N10 M6\nN20 G1 X2 F6000\nN30 M6\nN40 G1 X4\nM30\n"
+
+    async def story():
+        async with ClientSession(cookie_jar=CookieJar(unsafe=True)) as session:
+            page = await open_page(session, port)
+            assert (await page.command("plc", "auto_acknowledge", enabled=False))["ok"]
+            assert (await page.ask("load", name="part.nc", text=program))["ok"]
+            assert (await page.command("channel", "start"))["ok"]
+            first = await page.wait_for("handshake")
+            assert (first["kind"], first["number"], first["line"], first["acknowledge_needed"]) == ("M", 6, 1, True)
+            answer = await page.command("plc", "acknowledge", id=first["id"])
+            assert answer["ok"] and answer["cycle"] > first["cycle"]
+            assert (await page.wait_for("handshake_done"))["id"] == first["id"]
+            second = await page.wait_for("handshake")
+            assert second["id"] != first["id"] and second["line"] == 3
+            assert (await page.command("channel", "reset"))["ok"]
+            assert (await page.wait_for("handshake_done"))["id"] == second["id"]
+            refused = await page.command("plc", "acknowledge", id=second["id"])
+            assert refused["number"] == 22013
+            reply = await session.get(f"http://127.0.0.1:{port}/api/snapshot.mcap?seconds=1")
+            assert reply.status == 200, await reply.text()
+            snapshot.write_bytes(await reply.read())
+            return first["cycle"], answer["cycle"]
+
+    run = Running(machine, "--composed", "--web", str(port), "--stay", "--keep", "5", "--record", str(recording))
+    try:
+        wait_for_server(run)
+        asked, acknowledged = asyncio.run(story())
+        run.process.send_signal(signal.SIGINT)
+        run.finish(0)
+    finally:
+        run.end()
+    verified(recording)
+    states = read_recording(recording).states["/x/state"]
+    moved = states["cycle"][states["set_position"] != 0.0]
+    assert asked < acknowledged < moved[0]
+    assert states["set_position"][-1] == 2.0
+    taken = verified(snapshot).states["/x/state"]
+    assert set(taken["set_position"]) <= set(states["set_position"]) and len(taken) >= 1000
+
+
 def test_a_run_is_killed_and_its_server_ends(ros_domain, machine):
     run = Running(machine, "--composed", "--web", str(unused_port()), "--stay")
     try:

@@ -123,6 +123,21 @@ async def site(machine=MILL, *, connect=None, users=None, programs=EXAMPLES, wai
         await client.close()
 
 
+def waiting_mill(folder):
+    """The mill, whose M6, M3, S and H12 wait for an acknowledgement of the PLC."""
+    text = Path(MILL).read_text(encoding="utf-8")
+    for before, after in (
+        ("m3_synch: MVS_SVS\n", "m3_synch: MVS_SVS | PLC_INFO\n"),
+        ("s_synch: MOS\n", "s_synch: MVS_SVS | PLC_INFO\n"),
+        ("    m_synch:\n", '    h_synch: {"12": MVS_SVS}\n    m_synch:\n'),
+    ):
+        assert before in text
+        text = text.replace(before, after)
+    file = folder / "waiting_mill.yaml"
+    file.write_text(text, encoding="utf-8")
+    return str(file)
+
+
 def users_file(folder):
     """One user of each role."""
     file = folder / "users.yaml"

@@ -96,6 +96,45 @@ def test_ten_thousand_messages_a_second():
     run(story)
 
 
+@pytest.mark.parametrize("size", [(1 << 20) + 1, 8 << 20])
+def test_a_message_of_more_than_a_mebibyte(size):
+    async def story(here):
+        page, other = await here.page(), await here.page(commands=False)
+        await page.socket.send_str('{"type": "ping", "id": 1, "text": "' + "x" * (size - 40) + '"}' + " " * 40)
+        messages, code = await end_of(page.socket)
+        errors = [message for message in messages if message["type"] == "error"]
+        text = "a message of the page is larger than 1048576 bytes; it was not read, and the page is cut off"
+        assert [(error["number"], error["text"]) for error in errors] == [(26205, text)]
+        assert errors[0]["remedy"].startswith("Load a large program from the program folder")
+        assert code == 1009
+        await other.wait_for("operator", lambda message: message["holder"] is None)
+        assert (await other.ask("take_command"))["ok"]
+
+    run(story)
+
+
+def test_a_message_of_a_mebibyte():
+    async def story(here):
+        page = await here.page()
+        begin = '{"type": "ping", "id": 77}'
+        await page.socket.send_str(begin + " " * ((1 << 20) - len(begin)))
+        assert (await page.wait_for("answer", lambda answer: answer["id"] == 77))["ok"]
+
+    run(story)
+
+
+def test_a_first_message_that_is_too_large():
+    async def story(here):
+        await here.token()
+        socket = await here.client.ws_connect("/ws")
+        await socket.send_str("x" * (2 << 20))
+        messages, code = await end_of(socket)
+        assert [message["number"] for message in messages] == [26205] and code == 1009
+        assert not here.hub.sessions
+
+    run(story)
+
+
 @pytest.mark.parametrize("path", ["/", "/api/session", "/api/programs", "/ws"])
 def test_a_forged_origin(path):
     async def story(here):

@@ -72,13 +72,16 @@ def test_the_state_has_targets_and_the_emergency_stop():
 def test_handshakes_of_a_program_that_was_reset():
     async def story(here):
         page = await here.page()
-        request = HandshakeRequest(5, 7, "channel", "M", "", 6, 0.0, 1, True)
-        here.hub._tell_request(request)
+        cycle = 10**9  # the blocks of the machine itself come before it
+        request = HandshakeRequest(cycle, 7, "channel", "M", "", 6, 0.0, 1, True)
+        [session] = here.hub.sessions
+        view = session.view
+        view.tell_request(request)
         assert (await page.wait_for("handshake"))["id"] == 7
-        here.hub._drop_handshakes("channel", ChannelBlock(0, 20, done=True))  # from before it
-        here.hub._drop_handshakes("channel", ChannelBlock(6, 20, done=False))
-        assert 7 in here.hub.handshakes
-        here.hub._drop_handshakes("channel", ChannelBlock(6, 20, done=True))
+        view.drop_handshakes("channel", ChannelBlock(0, 20, done=True))  # from before it
+        view.drop_handshakes("channel", ChannelBlock(cycle + 1, 20, done=False))
+        assert 7 in view.handshakes
+        view.drop_handshakes("channel", ChannelBlock(cycle + 1, 20, done=True))
         assert await page.wait_for("handshake_done") == {"type": "handshake_done", "id": 7}
 
     run(story)

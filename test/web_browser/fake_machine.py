@@ -22,6 +22,7 @@ CYCLES = 50
 """Of a frame of the scope."""
 FIELDS = ("set_position", "actual_position", "set_velocity", "actual_velocity", "following_error", "command_velocity")
 NASTY = "<script>window.hacked = true</script>.nc"
+SNAPSHOT = bytes(range(256)) * 40
 PROGRAM = "\n".join(["%demo", *(f"N{10 * i} G1 X{i % 100} Y{i % 37} F1200" for i in range(1, 400)), "N9999 M30"])
 
 
@@ -83,6 +84,11 @@ class Fake:
         self.delay = 0.0
         """Seconds until a ping is answered."""
         self.role, self.has_login, self.logged_in = "commissioner", False, True
+        self.refusals: dict[str, dict[str, Any]] = {}
+        """Type of a message -> number and text with which it is refused."""
+        self.snapshots: list[str] = []
+        """Seconds of each snapshot that was asked for."""
+        self.task = 0
         self.needs_welcome = False
         """Who is not logged in is by looking at the page."""
         self.backplot_delays: list[float] = []
@@ -111,6 +117,7 @@ class Fake:
         self.app.router.add_get("/api/parameters", self._parameters)
         self.app.router.add_get("/api/curve", self._curve)
         self.app.router.add_get("/api/recorded", self._recorded)
+        self.app.router.add_get("/api/snapshot.mcap", self._snapshot)
         self.app.router.add_get("/ws", self._socket)
         self.app.router.add_static("/static", STATIC)
         self.app.on_response_prepare.append(self._headers)
@@ -199,10 +206,17 @@ class Fake:
         begin, end = float(request.query["from"]), float(request.query["to"])
         step = max(1, round((end - begin) * 1000 / 2000))
         cycles = np.arange(round(begin * 1000), round(end * 1000), step)
-        columns = np.concatenate([self.column(name, cycles) for name in names]).astype("<f4")
+        kind = "<f4" if request.query.get("bits") == "32" else "<f8"
+        columns = np.concatenate([self.column(name, cycles) for name in names]).astype(kind)
         return web.Response(
             body=struct.pack("<5I", step, int(cycles[0]), 0, len(names), len(cycles)) + columns.tobytes()
         )
+
+    async def _snapshot(self, request: web.Request) -> web.Response:
+        self.snapshots.append(request.query["seconds"])
+        if refusal := self.refusals.get("snapshot"):
+            return web.json_response(refusal, status=400)
+        return web.Response(body=SNAPSHOT, content_type="application/octet-stream")
 
     # the socket
 
@@ -282,6 +296,9 @@ class Fake:
 
     async def _take(self, socket: web.WebSocketResponse, page: int, message: dict[str, Any]) -> None:
         kind = message["type"]
+        if refusal := self.refusals.get(kind):
+            await socket.send_json({"type": "answer", "id": message["id"], "ok": False, **refusal})
+            return
         if kind == "hello":
             await socket.send_json(self.hello(page))
             await socket.send_json({"type": "state", "time": self.time, "units": self.state})
@@ -300,6 +317,11 @@ class Fake:
         elif kind == "load":
             self.state["channel"] |= {"program": message["name"], "state": "ready"}
             await self.tell({"type": "program", "channel": "channel", "name": message["name"]})
+        elif kind in ("identify", "circle"):
+            self.task += 1
+            fields = {"task": self.task}
+        elif kind == "accept":
+            fields = {"file": f"/machines/{message['file']}"}
         elif kind == "offsets":
             values = {"X": 12.5, "Y": 0.0, "Z": None}
             fields = {"axes": ["X", "Y", "Z"], "offsets": [{"index": 1, "name": "G54", "values": values}]}
@@ -324,12 +346,15 @@ class Fake:
         elif command == "feed_hold":
             state["state"] = "hold" if arguments["enabled"] else "running"
         elif command == "home":
-            asyncio.get_running_loop().call_later(0.1, state.update, {"state": "Homing"})
-            asyncio.get_running_loop().call_later(0.6, state.update, {"state": "Standstill"})
+            asyncio.get_running_loop().call_later(0.1, state.update, {"state": "Homing"})  # until `arrive`
         elif command == "reset" and unit == "channel":
             state |= {"state": "ready", "active": False, "line": 0}
         elif command == "emergency_stop":
             state["emergency_stop"] = arguments["enabled"]
+
+    async def arrive(self, axis: str) -> None:
+        """Its homing ends."""
+        self.state[axis] |= {"state": "Standstill"}
 
     async def raise_alarm(self, text: str, *, severity: str = "error", number: int = 70100, source: str = "x") -> None:
         self.alarm += 1

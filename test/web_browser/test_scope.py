@@ -3,7 +3,9 @@
 import math
 from pathlib import Path
 
-from web_browser_support import until
+from web_browser_support import eventually, until
+
+SAMPLES = "Number((/([0-9]+) samples/.exec(document.querySelector('main').innerText) || [0, 0])[1])"
 
 
 def module(page, name, body):
@@ -14,7 +16,7 @@ def module(page, name, body):
 def test_no_sample_is_lost_and_peaks_are_measured(look):
     page = look("scope")
     page.wait_for_selector(".measures tbody tr")
-    until(page, "Number((/([0-9]+) samples/.exec(document.querySelector('main').innerText) || [0, 0])[1]) > 2500")
+    until(page, f"{SAMPLES} > 2500")
     assert "lost" not in page.inner_text("main")
     cells = page.locator(".measures tbody tr").first.locator("td").all_inner_texts()
     assert (cells[0], cells[1], cells[4]) == ("−10", "10", "20")
@@ -32,9 +34,9 @@ def test_an_edge_holds_the_picture_with_what_was_before(look):
     page.press("[data-cursor=A]", "Enter")
     page.fill("[data-cursor=B]", "0")
     page.press("[data-cursor=B]", "Enter")
-    page.wait_for_timeout(300)
-    cells = page.locator(".measures tbody tr").first.locator("td").all_inner_texts()
-    before, after = float(cells[6]), float(cells[7])
+    row = page.locator(".measures tbody tr").first.locator("td")
+    eventually(page, lambda: all(text.strip("–") for text in row.all_inner_texts()[6:8]))
+    before, after = (float(text.replace("−", "-")) for text in row.all_inner_texts()[6:8])
     assert before < 5 <= after
     assert after - before < 0.13  # one cycle
     assert page.inner_text(".u-legend").count("x.set_velocity") == 1
@@ -70,8 +72,7 @@ def test_a_math_channel_and_a_view_that_is_kept(look):
 
 def test_export_has_every_cycle(look):
     page = look("scope")
-    until(page, "document.querySelector('main').innerText.includes('samples')")
-    page.wait_for_timeout(2500)
+    until(page, f"{SAMPLES} > 2500")
     page.click("button:text-is('Freeze')")
     with page.expect_download() as download:
         page.click("text=Export CSV")

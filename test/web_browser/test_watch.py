@@ -1,7 +1,7 @@
 """Watch and recordings: backplot, progress, time slider."""
 
 from fake_machine import Fake
-from web_browser_support import InThread, open_page, until
+from web_browser_support import InThread, eventually, open_page, until
 
 SEGMENTS = 150_000
 
@@ -12,7 +12,6 @@ def test_a_backplot_of_150000_segments_is_shown(browser):
         page = open_page(browser, server.url + "#watch")
         page.wait_for_selector("[data-ms]")
         assert f"{SEGMENTS - 1:,} segments" in page.inner_text(".backplot")
-        assert int(page.get_attribute(".backplot", "data-ms")) < 10_000  # 3 s where nothing else runs
         drawn = page.evaluate("document.querySelector('.backplot').scene._renderer.info.render.lines")
         assert drawn >= SEGMENTS - 1
         assert page.complaints.texts == []
@@ -95,7 +94,7 @@ def test_a_recording_has_a_time_and_nothing_to_operate(browser):
         )
         page.wait_for_selector("text=12.000 s of 30.0 s")
         until(page, "document.querySelector('main').innerText.includes('2000 samples')")
-        assert [message["time"] for message in fake.received if message["type"] == "seek"][-1] == 12
+        eventually(page, lambda: fake.has_received(type="seek", time=12))
         page.click("button:text-is('Play')")
         until(page, "Number(document.querySelector('.recording-bar input').value) > 12.2")
         page.click("button:text-is('Pause')")

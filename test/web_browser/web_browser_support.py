@@ -6,7 +6,7 @@ import asyncio
 import os
 import shutil
 import threading
-from collections.abc import Coroutine, Iterator
+from collections.abc import Callable, Coroutine, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -104,6 +104,15 @@ def until(page: Any, expression: str) -> Any:
             return value
         page.wait_for_timeout(50)
     raise AssertionError(f"not true in {PATIENCE} ms: {expression}")
+
+
+def eventually(page: Any, condition: Callable[[], Any]) -> None:
+    """Waits until a condition of the server is true; the page goes on meanwhile."""
+    for _ in range(PATIENCE // 20):
+        if condition():
+            return
+        page.wait_for_timeout(20)
+    raise AssertionError(f"it did not happen in {PATIENCE} ms")
 
 
 def open_page(

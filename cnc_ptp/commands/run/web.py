@@ -52,10 +52,10 @@ def web(
 def connector(recording: str | None) -> Callable[[], Face]:
     """Gives the face of the machine. Raises CncError 26001 … for a recording that cannot be read."""
     if recording is not None:
-        from cnc_ptp.web.faces.recorded_face import RecordedFace
+        from cnc_ptp.web.faces.recorded_face import recorded_face
 
-        first = [RecordedFace(recording)]  # what is wrong with it is reported before anything is served
-        return lambda: first.pop() if first else RecordedFace(recording)
+        first = [recorded_face(recording)]  # what is wrong with it is reported before anything is served
+        return lambda: first.pop() if first else recorded_face(recording)
     from cnc_ptp.web.faces.live_face import live_face
 
     namespace = ros_arguments().namespace

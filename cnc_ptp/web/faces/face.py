@@ -75,6 +75,14 @@ class Face(ABC):
         """Channel -> the program that it has, of a recording; a machine that runs tells it by its records."""
         return {}
 
+    def last_loads(self) -> Mapping[str, Load]:
+        """As `loads`, at the end of a recording."""
+        return {}
+
+    def for_page(self) -> Face:
+        """The face of one page: a recording has another time on each."""
+        return self
+
     @abstractmethod
     def note(self, cycle: int, text: str) -> None:
         """An event for recordings: who has done what."""

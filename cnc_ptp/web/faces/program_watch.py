@@ -40,19 +40,13 @@ def load_of(arguments: Mapping[str, Any]) -> Load:
 class ProgramWatch:
     """The loaded programs of a machine, by channel."""
 
-    def __init__(self, folder: ProgramFolder) -> None:
+    def __init__(self, folder: ProgramFolder, *, is_recording: bool = False) -> None:
+        """Of a recording nothing is read but what it has."""
         self._folder = folder
+        self._is_recording = is_recording
         self.loaded: dict[str, Load] = {}
         self._known: dict[str, list[Load]] = {}
         self._untold: list[str] = []
-        self._is_recording = False
-
-    def forget(self, *, is_recording: bool = False) -> None:
-        """Another machine. Of a recording nothing is read but what it has."""
-        self.loaded.clear()
-        self._known.clear()
-        self._untold.clear()
-        self._is_recording = is_recording
 
     def take_record(self, record: CommandRecord) -> None:
         """A command that was given, by whomever; a program that was refused is none."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import struct
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import acos, ceil, radians
 from pathlib import Path
@@ -27,8 +27,8 @@ from cnc_ptp.path.geometry import Arc
 MOST_POINTS = 1_000_000
 LONGEST = 60.0
 """Seconds of interpretation: an endless program is drawn as far as it came."""
-LOOK_EVERY = 1000
-"""Blocks between two looks at the time."""
+LOOK_EVERY = 100
+"""Blocks between two looks at the time, and at whether anybody still wants the drawing."""
 CHORD = 0.005
 """mm by which a chord of an arc leaves it; of large arcs at most …"""
 MOST_CHORDS = 180
@@ -57,8 +57,21 @@ class Drawing:
     """Texts of the programs that it calls, by name; None: they are looked for."""
 
 
-def draw(drawing: Drawing, *, most: int = MOST_POINTS, seconds: float = LONGEST) -> bytes:
-    """HEAD and points. Raises ProgramError for a program that is refused when it is loaded."""
+def is_always_wanted() -> bool:
+    return True
+
+
+def draw(
+    drawing: Drawing,
+    *,
+    most: int = MOST_POINTS,
+    seconds: float = LONGEST,
+    is_wanted: Callable[[], bool] = is_always_wanted,
+) -> bytes:
+    """HEAD and points, as far as it came when it is no longer wanted.
+
+    Raises ProgramError for a program that is refused when it is loaded.
+    """
     check, turning = program_check(drawing)
     files = drawing.files
     if files is None:
@@ -71,7 +84,8 @@ def draw(drawing: Drawing, *, most: int = MOST_POINTS, seconds: float = LONGEST)
     is_whole = True
     try:
         for number, block in enumerate(blocks):
-            if reads_the_run(block) or pen.is_full or (number % LOOK_EVERY == 0 and time.monotonic() > end):
+            is_late = number % LOOK_EVERY == 0 and (time.monotonic() > end or not is_wanted())
+            if reads_the_run(block) or pen.is_full or is_late:
                 is_whole = False
                 break
             pen.draw(block)

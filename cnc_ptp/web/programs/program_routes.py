@@ -12,6 +12,7 @@ from cnc_ptp.web.access.access import Access
 from cnc_ptp.web.access.guard import refuse
 from cnc_ptp.web.access.logins import Login
 from cnc_ptp.web.access.rights import require_role
+from cnc_ptp.web.faces.program_watch import ProgramWatch
 from cnc_ptp.web.hub import Hub
 from cnc_ptp.web.numbers import NO_COMMAND_RIGHT, PROGRAM_EXISTS, TOO_LARGE, TOO_MANY_MESSAGES
 from cnc_ptp.web.programs.backplot import Drawing
@@ -49,7 +50,7 @@ class ProgramRoutes:
         """Always as plain text: what is in a program is never taken for a page."""
         self._access.login_of(request)
         name, channel = request.match_info["name"], request.query.get("channel", "")
-        text = await asyncio.to_thread(self._hub.programs.text, name, channel)
+        text = await asyncio.to_thread(self._programs(request).text, name, channel)
         return web.Response(text=text, content_type=PLAIN, charset="utf-8", headers={"Cache-Control": "no-store"})
 
     async def _upload(self, request: web.Request) -> web.StreamResponse:
@@ -87,7 +88,7 @@ class ProgramRoutes:
             raise CncError(NO_COMMAND_RIGHT, reason, NOT_WRITTEN)
 
     async def _backplot(self, request: web.Request) -> web.StreamResponse:
-        """`?channel=C`: the path of its program (backplot.py says in which form)."""
+        """`?channel=C`: the path of its program (backplot.py says in which form), `&page=N`: as that page sees it."""
         self._access.login_of(request)
         face = self._hub.require_face()
         channel = request.query.get("channel", "channel")
@@ -95,14 +96,22 @@ class ProgramRoutes:
             raise unknown_unit(channel, [unit for unit, kind in face.kinds.items() if kind == "channel"], "channel")
         if not self._drawings.permits():
             raise CncError(TOO_MANY_MESSAGES, "backplot: too many requests in a short time", "nothing was read; wait")
-        load = await asyncio.to_thread(self._hub.programs.loaded_text, channel)
+        load = await asyncio.to_thread(self._programs(request).loaded_text, channel)
         files = load.files if load.files or face.is_recording else None
         drawing = Drawing(channel, face.kinds, face.sets, face.cycle_time, load.text or "", load.path, files=files)
-        points = await self._hub.office.draw(drawing)
+        points = await self._hub.office.draw(drawing, replaces=not face.is_recording)
         headers = {"Cache-Control": "no-store"}
         response = web.Response(body=points, content_type="application/octet-stream", headers=headers)
         response.enable_compression()
         return response
+
+    def _programs(self, request: web.Request) -> ProgramWatch:
+        """Those of the page `?page=N`: of a recording, each is at another time. Without it the last ones."""
+        number = request.query.get("page", "")
+        for session in self._hub.sessions:
+            if str(session.number) == number and session.view is not None:
+                return session.view.programs
+        return self._hub.programs
 
     async def _content(self, request: web.Request) -> bytes:
         """Refused as soon as it is known to be too large."""

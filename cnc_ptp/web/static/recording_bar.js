@@ -1,4 +1,4 @@
-// The time of a recording: where it is shown, and playing it. The server keeps the time, for all pages that look at it.
+// The time of a recording: where it is shown, and playing it. The server keeps the time of this page; others have their own.
 import { button, h, press, say, select } from "./dom.js";
 import { fixed } from "./format.js";
 
@@ -23,9 +23,13 @@ export function recordingBar(app) {
 
   async function setSpeed(wanted) {
     if (!(await app.request("play", { speed: wanted }))) return;
-    isPlaying = wanted > 0;
-    press(play, isPlaying);
-    say(play, isPlaying ? "Pause" : "Play");
+    showPlaying(wanted > 0);
+  }
+
+  function showPlaying(on) {
+    isPlaying = on;
+    press(play, on);
+    say(play, on ? "Pause" : "Play");
   }
 
   function show(time) {
@@ -53,7 +57,8 @@ export function recordingBar(app) {
     if (bar.hidden) return;
     slider.min = store.machine.start ?? 0;
     slider.max = store.machine.end ?? 0;
-    slider.value = slider.min;
+    slider.value = slider.min; // a page that connects again begins anew
+    showPlaying(false);
     show(Number(slider.min));
   });
   return bar;

@@ -11,7 +11,7 @@ export async function listPrograms(app) {
 /** The text of a program as the channel has loaded it; null after a refusal, which is shown. */
 export function readProgram(app, name) {
   const channel = encodeURIComponent(app.store.channel);
-  return app.attempt(app.connection.http(`/api/programs/${encodeURIComponent(name)}?channel=${channel}`, { as: "text" }));
+  return app.attempt(app.connection.http(`/api/programs/${encodeURIComponent(name)}?channel=${channel}&page=${app.store.page}`, { as: "text" }));
 }
 
 export async function loadProgram(app, name) {

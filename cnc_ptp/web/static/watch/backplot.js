@@ -38,7 +38,7 @@ export function backplot(app) {
     say(status, "The server draws the program …");
     let drawn;
     try {
-      const bytes = await app.connection.http(`/api/backplot?channel=${encodeURIComponent(store.channel)}`, { as: "bytes" });
+      const bytes = await app.connection.http(`/api/backplot?channel=${encodeURIComponent(store.channel)}&page=${store.page}`, { as: "bytes" });
       drawn = readPath(bytes);
     } catch (error) {
       if (number !== loading) return;

@@ -10,7 +10,7 @@ export async function measuredPath({ store, connection }) {
   const known = units.filter(Boolean);
   const { start, end } = store.machine;
   const signals = known.map((unit) => `${unit}.actual_position`).join(",");
-  const bytes = await connection.http(`/api/recorded?signals=${encodeURIComponent(signals)}&from=${start}&to=${end}&points=${POINTS}`, { as: "bytes" });
+  const bytes = await connection.http(`/api/recorded?signals=${encodeURIComponent(signals)}&from=${start}&to=${end}&points=${POINTS}&bits=32`, { as: "bytes" });
   const { columns, count } = readRecorded(bytes);
   const positions = new Float32Array(3 * count);
   units.forEach((unit, k) => {

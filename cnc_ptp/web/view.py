@@ -1,0 +1,136 @@
+"""What pages know of a machine: all pages share that of a machine that runs, each has its own of a recording."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, fields
+from typing import Any, Protocol
+
+from cnc_ptp.protocol.blocks import ChannelBlock, CommandRecord, CycleBlock, Event, HandshakeRequest
+from cnc_ptp.web.faces.alarms import Alarms, event_fields
+from cnc_ptp.web.faces.face import Face, State
+from cnc_ptp.web.faces.offset_table import OffsetTable
+from cnc_ptp.web.faces.program_watch import ProgramWatch
+from cnc_ptp.web.faces.switches import Switches
+from cnc_ptp.web.faces.targets import Targets
+from cnc_ptp.web.protocol import difference
+
+
+class Looking(Protocol):
+    """A page that is told what comes."""
+
+    def send(self, message: Mapping[str, Any]) -> None: ...
+
+    def send_state(self, time: float, state: State, changes: State) -> None: ...
+
+    def take_blocks(self, blocks: Sequence[tuple[str, CycleBlock]]) -> None: ...
+
+
+class View:
+    """A face of a machine, what has come of it, and the pages that look at it."""
+
+    def __init__(self, face: Face, programs: ProgramWatch) -> None:
+        self.face = face
+        self.pages: list[Looking] = []
+        self.programs = programs
+        self.alarms = Alarms()
+        self.handshakes: dict[int, dict[str, Any]] = {}
+        channels = [unit for unit, kind in face.kinds.items() if kind == "channel"]
+        self.tables = {unit: OffsetTable(face.sets[unit], face.sets) for unit in channels}
+        self.targets = Targets([unit for unit, kind in face.kinds.items() if kind == "axis"])
+        self.offsets: dict[str, dict[str, Any]] = {}
+        """Channel -> what lies between programmed and machine positions."""
+        self._switches = Switches()
+        self._state: State = {}
+
+    def known(self) -> dict[str, Any]:
+        """What a page that comes now is told at first."""
+        return {
+            "alarms": self.alarms.list(),
+            "handshakes": [*self.handshakes.values()],
+            "programs": self.programs.all(),
+            "offsets": self.offsets,
+        }
+
+    def tell(self) -> bool:
+        """What has come since the last time, to all pages; whether a channel has another program."""
+        face = self.face
+        news = face.news()
+        for event in news.events:
+            self._tell_event(event, face.cycle_time)
+        for request in news.requests:
+            self.tell_request(request)
+        for record in news.records:
+            self._tell_answered(record, news.blocks)
+        for unit, block in news.blocks:
+            if isinstance(block, ChannelBlock):
+                self._tell_offsets(unit, block)
+                self.drop_handshakes(unit, block)
+        if news.diagnostics:
+            self.to_all({"type": "diagnostics", "nodes": [*news.diagnostics]})
+        state = {
+            unit: {**fields, **self._switches.fields.get(unit, {}), **self.targets.fields(unit)}
+            for unit, fields in face.state().items()
+        }
+        changes = difference(state, self._state)
+        self._state = state
+        has_loaded = self._tell_programs(changes)
+        for page in [*self.pages]:
+            page.send_state(face.time, state, changes)
+            page.take_blocks(news.blocks)
+        return has_loaded
+
+    def to_all(self, message: Mapping[str, Any]) -> None:
+        for page in self.pages:
+            page.send(message)
+
+    def _tell_programs(self, changes: State) -> bool:
+        self.programs.take_state(changes, self.face.loads())
+        loaded = self.programs.news()
+        for program in loaded:
+            self.to_all({"type": "program", **program})
+        return bool(loaded)
+
+    def _tell_event(self, event: Event, cycle_time: float) -> None:
+        fields = event_fields(event, cycle_time)
+        alarm = self.alarms.take(fields)
+        self.to_all({"type": "event", **(alarm or fields)})
+
+    def tell_request(self, request: HandshakeRequest) -> None:
+        """A function of a program; pages are told of those that wait for an acknowledgement."""
+        self._switches.take_request(request)
+        if request.acknowledge_needed:
+            self.handshakes[request.id] = request_fields(request)
+            self.to_all({"type": "handshake", **request_fields(request)})
+
+    def _tell_answered(self, record: CommandRecord, blocks: Sequence[tuple[str, CycleBlock]]) -> None:
+        """A request that was acknowledged, an offset that was changed, by whomever."""
+        self._switches.take_record(record)
+        self.targets.take_record(record, blocks, self._state)
+        self.programs.take_record(record)
+        if record.target in self.tables:
+            self.tables[record.target].take_record(record)
+        if record.command == "acknowledge" and record.accepted:
+            self._end_handshake(json.loads(record.arguments_json).get("id"))
+
+    def _end_handshake(self, number: int) -> None:
+        if self.handshakes.pop(number, None) is not None:
+            self.to_all({"type": "handshake_done", "id": number})
+
+    def drop_handshakes(self, channel: str, block: ChannelBlock) -> None:
+        """Those of a program that has ended, or was reset: nobody waits for them."""
+        if block.done:
+            for number, request in [*self.handshakes.items()]:
+                if request["channel"] == channel and request["cycle"] < block.first_cycle:
+                    self._end_handshake(number)
+
+    def _tell_offsets(self, channel: str, block: ChannelBlock) -> None:
+        for offsets in block.offsets:
+            self.tables[channel].take_active(offsets)
+            self.offsets[channel] = {"channel": channel, **asdict(offsets)}
+            self.to_all({"type": "offsets", **self.offsets[channel]})
+
+
+def request_fields(request: HandshakeRequest) -> dict[str, Any]:
+    return {each.name: getattr(request, each.name) for each in fields(HandshakeRequest)}

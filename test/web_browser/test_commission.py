@@ -1,0 +1,132 @@
+"""Commission: identification and circle test as tasks of the server; the snapshot of the scope."""
+
+from pathlib import Path
+
+import pytest
+from fake_machine import SNAPSHOT
+from web_browser_support import eventually, until
+
+VALUES = "/x:\n  ros__parameters:\n    lr_param: {frict_comp: 1}\n"
+PICTURE = (
+    '<svg xmlns="http://www.w3.org/2000/svg" width="40" height="30"><circle cx="20" cy="15" r="10" fill="red"/></svg>'
+)
+CANCELLED = {"number": 26256, "text": "task 1 was cancelled; nothing was found", "cause": "", "remedy": ""}
+
+
+def open_tab(look, name, **options):
+    page = look("commission", command=True, **options)
+    page.click(f"[role=tab]:text-is('{name}')")
+    return page
+
+
+def result(task=1, **fields):
+    return {"type": "result", "task": task, "ok": True, "output": "report of the task", **fields}
+
+
+@pytest.mark.parametrize("what", ["friction", "dynamics"])
+def test_an_axis_is_identified_and_its_values_accepted(look, server, fake, what):
+    page = open_tab(look, "Identify")
+    page.select_option("label:text-is('What') + select", what)
+    page.click("button.primary >> text=Start")
+    eventually(page, lambda: fake.has_received(type="identify", axis="x", what=what))
+    page.wait_for_selector("[role=status]:text-is('Started.')")
+    assert page.locator("h2:text-is('Result')").is_hidden()
+    server.do(fake.tell({"type": "progress", "task": 7, "text": "of another page"}))
+    server.do(fake.tell({"type": "progress", "task": 1, "text": "speed 3 of 8"}))
+    page.wait_for_selector("[role=status]:text-is('speed 3 of 8')")
+    assert page.get_attribute("progress", "value") is None  # how far it is is not known
+    server.do(fake.tell(result(task=7, values="of another page")))
+    server.do(fake.tell(result(values=VALUES)))
+    page.wait_for_selector("[role=status]:text-is('Finished.')")
+    assert page.inner_text("[aria-label=Report]") == "report of the task"
+    assert page.inner_text("[aria-label='Identified values']").strip() == VALUES.strip()
+    assert page.locator("button:text-is('Cancel')").is_disabled()
+    page.fill("label:text-is('New machine file') + input", "better.yaml")
+    page.click("button:text-is('Accept')")
+    page.wait_for_selector(".notice >> text=/machines/better.yaml is written.")
+    assert fake.has_received(type="accept", task=1, file="better.yaml")
+
+
+def test_a_machine_file_that_is_there_is_not_replaced(look, server, fake):
+    text = "x_identified.yaml is there already; nothing was written; give another name"
+    fake.refusals["accept"] = {"number": 26254, "text": text, "cause": "", "remedy": "Give another name."}
+    page = open_tab(look, "Identify")
+    page.click("button.primary >> text=Start")
+    eventually(page, lambda: fake.has_received(type="identify"))
+    server.do(fake.tell(result(values=VALUES)))
+    page.click("button:text-is('Accept')")
+    page.wait_for_selector(f".notice.error >> text={text}")
+
+
+def test_an_identification_is_cancelled(look, server, fake):
+    page = open_tab(look, "Identify")
+    assert page.locator("button:text-is('Cancel')").is_disabled()
+    page.click("button.primary >> text=Start")
+    page.click("button:text-is('Cancel')")
+    eventually(page, lambda: fake.has_received(type="cancel_task", task=1))
+    server.do(fake.tell({"type": "result", "task": 1, "ok": False, "output": "", **CANCELLED}))
+    page.wait_for_selector("[role=status] >> text=task 1 was cancelled; nothing was found")
+    assert page.locator("h2:text-is('Result')").is_hidden()
+    assert page.locator("button:text-is('Cancel')").is_disabled()
+
+
+def test_a_task_that_another_one_holds_up_is_refused(look, fake):
+    text = "another task runs; nothing was done; wait for its end, or cancel it"
+    fake.refusals["identify"] = {"number": 26256, "text": text, "cause": "", "remedy": ""}
+    page = open_tab(look, "Identify")
+    page.click("button.primary >> text=Start")
+    page.wait_for_selector(f".notice.error >> text={text}")
+    assert page.locator("[role=status]:text-is('Not started.')").count() == 1
+
+
+def test_only_a_commissioner_identifies(look, fake):
+    fake.role = "operator"
+    page = open_tab(look, "Identify")
+    assert page.locator("button.primary:text-is('Start')").is_disabled()
+
+
+def test_the_circle_test_on_a_simulation_shows_its_picture(look, server, fake):
+    page = open_tab(look, "Circle test")
+    page.select_option("label:text-is('Plane') + select", "XZ")
+    page.fill("label:text-is('Radius in mm') + input", "7.5")
+    page.fill("label:text-is('Feed in mm/min') + input", "1500")
+    page.click("text=Simulate")
+    eventually(page, lambda: fake.has_received(type="circle", plane="ZX", radius=7.5, feed=1500))
+    server.do(fake.tell(result(picture=PICTURE)))
+    page.wait_for_selector("img.picture")
+    until(page, "document.querySelector('img.picture').naturalWidth === 40")
+    assert page.inner_text("pre[aria-label=Report]") == "report of the task"
+
+
+def test_a_circle_without_a_radius_is_none(look, fake):
+    page = open_tab(look, "Circle test")
+    page.fill("label:text-is('Radius in mm') + input", "")
+    page.click("text=Simulate")
+    until(page, "document.activeElement.required && document.activeElement.value === ''")
+    assert not fake.has_received(type="circle")
+
+
+def test_a_snapshot_of_the_recorder_is_saved(look, fake):
+    page = look("scope")
+    page.select_option("label:text-is('Window') + select", "5")
+    with page.expect_download() as download:
+        page.click("text=MCAP snapshot")
+    assert download.value.suggested_filename == "snapshot.mcap"
+    assert Path(download.value.path()).read_bytes() == SNAPSHOT
+    assert fake.snapshots == ["5"]
+
+
+def test_a_snapshot_without_a_recorder_is_refused(look, fake):
+    text = "snapshot: there is no recorder; nothing was written; run with --keep SECONDS"
+    fake.refusals["snapshot"] = {"number": 26258, "text": text, "cause": "", "remedy": ""}
+    page = look("scope")
+    page.click("text=MCAP snapshot")
+    page.wait_for_selector(f".notice.error >> text={text}")
+    page.complaints.texts.clear()  # the browser logs the refusal 400
+
+
+def test_a_viewer_takes_no_snapshot(look, fake):
+    fake.role = "viewer"
+    page = look("scope")
+    page.wait_for_selector("text=Export CSV")
+    assert page.locator("text=MCAP snapshot").count() == 0
