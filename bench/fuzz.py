@@ -23,8 +23,9 @@ HEAD = (
 
 
 def row(verdict: Verdict) -> str:
-    numbers = f"{verdict.count:>10,} {verdict.refused:>10,} {verdict.undocumented:>12} {verdict.slowest:>10.2f} {verdict.slowest_number:>8}"
-    return f"{verdict.kind:<15} {verdict.seed:>6} {numbers} {verdict.growth:>11,} {verdict.seconds:>6.0f}"
+    counts = f"{verdict.count:>10,} {verdict.refused:>10,} {verdict.undocumented:>12}"
+    slowest = f"{verdict.slowest:>10.2f} {verdict.slowest_number:>8}"
+    return f"{verdict.kind:<15} {verdict.seed:>6} {counts} {slowest} {verdict.growth:>11,} {verdict.seconds:>6.0f}"
 
 
 @click.command()
