@@ -135,9 +135,14 @@ def test_a_message_with_a_frame_id_is_read_too():
     assert plain == encode_block(block, STAMPS) == with_plain_header(AxisBlock, plain, STAMPS)
 
 
-def test_a_block_with_columns_of_another_length_is_decoded_and_not_recorded():
+def test_a_block_with_columns_of_another_length_is_neither_decoded_nor_recorded():
+    """A unit that computed with it would fail."""
     message = encode(load_schema("cnc_ptp/msg/AxisBlock"), AxisBlock(10, 10), lambda _: header_at(0))
-    assert codec_of(AxisBlock).decode(message) == AxisBlock(10, 10)
+    with pytest.raises(CncError) as error:
+        codec_of(AxisBlock).decode(message)
+    assert str(error.value) == (
+        "P-ERR-26184 192 bytes are no message AxisBlock: set_position holds 0 values, and count is 10; they are ignored"
+    )
     with pytest.raises(CncError) as error:
         codec_of(AxisBlock).layout(message)
     assert str(error.value) == (
