@@ -206,7 +206,8 @@ def test_a_drawing_that_has_failed_is_tried_again(monkeypatch):
         await page.wait_for("program")
         right = here.hub.office._started
         monkeypatch.setattr(here.hub.office, "_started", lambda: 1 / 0)
-        assert (await here.client.get("/api/backplot")).status == 500
+        failed = await here.client.get("/api/backplot")
+        assert failed.status == 500, await failed.text()
         monkeypatch.setattr(here.hub.office, "_started", right)
         assert (await here.client.get("/api/backplot")).status == 200
 

@@ -91,7 +91,7 @@ def test_it_plays_to_its_end_and_begins_again(look_at):
 def test_the_scope_of_a_recording_is_not_rounded(look_at):
     page = look_at("scope")
     seek(page, 3.0)
-    until(page, "document.querySelector('main').innerText.includes('2000 samples')")
+    until(page, "document.querySelector('main').innerText.includes('2001 samples')")
     rounded = page.evaluate(
         """async () => {
         const { readRecorded } = await import("/static/scope/samples.js");

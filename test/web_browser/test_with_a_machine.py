@@ -305,7 +305,7 @@ def test_friction_is_identified_and_its_values_become_a_new_file(tuned, tmp_path
     assert "frict_comp" in page.inner_text("[aria-label='Identified values']")
     page.fill("label:text-is('New machine file') + input", "better.yaml")
     page.click("button:text-is('Accept')")
-    page.wait_for_selector(f".notice >> text={tmp_path}/better.yaml is written.")
+    page.wait_for_selector(f".notice >> text='{tmp_path}/better.yaml is written.'")
     assert read_machine(str(tmp_path / "better.yaml")).axes["x"].name == "x"
     assert (tmp_path / "mill.yaml").read_bytes() == before
     page.click("button:text-is('Accept')")
