@@ -28,7 +28,7 @@ class PageSocket(web.WebSocketResponse):
         self._is_leaving = False
 
     async def close(self, *, code: int = WSCloseCode.OK, message: bytes = b"", drain: bool = True) -> bool:
-        """As of aiohttp, which closes by itself when a message is too large."""
+        """As of aiohttp, which closes the socket when a message is too large."""
         if self._is_leaving:
             return False  # it closes when the page has left
         if code == WSCloseCode.MESSAGE_TOO_BIG and not self.closed:

@@ -18,7 +18,7 @@ from cnc_ptp.web.protocol import difference
 
 
 class Looking(Protocol):
-    """A page that is told what comes."""
+    """A page that gets what comes."""
 
     def send(self, message: Mapping[str, Any]) -> None: ...
 
@@ -45,7 +45,7 @@ class View:
         self._state: State = {}
 
     def known(self) -> dict[str, Any]:
-        """What a page that comes now is told at first."""
+        """What a page that comes now gets at first."""
         return {
             "alarms": self.alarms.list(),
             "handshakes": [*self.handshakes.values()],
@@ -98,7 +98,7 @@ class View:
         self.to_all({"type": "event", **(alarm or fields)})
 
     def tell_request(self, request: HandshakeRequest) -> None:
-        """A function of a program; pages are told of those that wait for an acknowledgement."""
+        """A function of a program; pages get those that wait for an acknowledgement."""
         self._switches.take_request(request)
         if request.acknowledge_needed:
             self.handshakes[request.id] = request_fields(request)

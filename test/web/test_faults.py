@@ -203,10 +203,12 @@ def test_a_drawing_that_has_failed_is_tried_again(monkeypatch):
     async def story(here):
         page = await here.page()
         assert (await page.ask("load", name="part.nc", text="G1 X10 F600\nM30\n"))["ok"]
-        await page.wait_for("program")
+        while "channel" not in here.hub.programs.loaded or here.hub.programs.loaded["channel"].text is None:
+            await asyncio.sleep(0.01)  # the state may have its name before its record comes
         right = here.hub.office._started
         monkeypatch.setattr(here.hub.office, "_started", lambda: 1 / 0)
-        assert (await here.client.get("/api/backplot")).status == 500
+        failed = await here.client.get("/api/backplot")
+        assert failed.status == 500, await failed.text()
         monkeypatch.setattr(here.hub.office, "_started", right)
         assert (await here.client.get("/api/backplot")).status == 200
 

@@ -43,7 +43,7 @@ def test_an_axis_is_identified_and_its_values_accepted(look, server, fake, what)
     assert page.locator("button:text-is('Cancel')").is_disabled()
     page.fill("label:text-is('New machine file') + input", "better.yaml")
     page.click("button:text-is('Accept')")
-    page.wait_for_selector(".notice >> text=/machines/better.yaml is written.")
+    page.wait_for_selector(".notice >> text='/machines/better.yaml is written.'")
     assert fake.has_received(type="accept", task=1, file="better.yaml")
 
 

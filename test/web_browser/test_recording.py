@@ -91,16 +91,16 @@ def test_it_plays_to_its_end_and_begins_again(look_at):
 def test_the_scope_of_a_recording_is_not_rounded(look_at):
     page = look_at("scope")
     seek(page, 3.0)
-    until(page, "document.querySelector('main').innerText.includes('2000 samples')")
+    until(page, "document.querySelector('main').innerText.includes('2001 samples')")
     rounded = page.evaluate(
         """async () => {
         const { readRecorded } = await import("/static/scope/samples.js");
-        const read = (bits) => app.connection.http(`/api/recorded?signals=x.set_position&from=2&to=3&points=1000&bits=${bits}`, { as: "bytes" });
+        const read = (bits) => app.connection.http(`/api/recorded?signals=x.set_position&from=2&to=3&points=1001&bits=${bits}`, { as: "bytes" });
         const [exact, short] = [readRecorded(await read(64)), readRecorded(await read(32))];
         return [exact.count, short.count, exact.columns[0].some((value) => value !== Math.fround(value)), exact.columns[0].every((value, i) => Math.fround(value) === short.columns[0][i])];
     }"""
     )
-    assert rounded == [1000, 1000, True, True]
+    assert rounded == [1001, 1001, True, True]
 
 
 def test_the_backplot_is_that_of_the_program_of_its_time(look_at):

@@ -94,7 +94,13 @@ class Complaints:
     def __init__(self, page: Any) -> None:
         self.texts: list[str] = []
         page.on("pageerror", lambda error: self.texts.append(str(error)))
-        page.on("console", lambda message: message.type == "error" and self.texts.append(message.text))
+        page.on("console", self._hear)
+
+    def _hear(self, message: Any) -> None:
+        """That no program is loaded yet, the browser logs, and the page says."""
+        has_no_program = "404" in message.text and "/api/backplot" in message.location["url"]
+        if message.type == "error" and not has_no_program:
+            self.texts.append(message.text)
 
 
 def until(page: Any, expression: str) -> Any:

@@ -89,7 +89,7 @@ class RecordedFace(Face):
 
     async def _play_on(self, seconds: float) -> None:
         if self._speed == 0.0 or self._turn.locked():
-            return  # its page looks elsewhere, and goes on from there
+            return  # its page looks elsewhere, and continues from there
         async with self._turn:
             wanted = min(self.end, self._time + self._speed * seconds)
             await self._have(wanted)

@@ -17,7 +17,7 @@ from cnc_ptp.web.programs.backplot import Drawing, draw
 KEPT = 4
 """Drawings, the newest ones."""
 SLOTS = 16
-"""Drawings whose cancelling the process is told of: more than there are at a time."""
+"""Drawings whose cancelling the process must know: more than there are at a time."""
 NOTHING_SHOWN = "nothing is shown"
 
 

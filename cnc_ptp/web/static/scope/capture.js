@@ -96,7 +96,7 @@ export class Capture {
     const turn = this._turn;
     const { start = 0, end = 0 } = this.app.store.machine;
     const from = Math.max(start, Math.min(time - this.window / 2, end - this.window));
-    const path = `/api/recorded?signals=${encodeURIComponent(this._names.join(","))}&from=${from}&to=${Math.min(end, from + this.window)}&points=2000`;
+    const path = `/api/recorded?signals=${encodeURIComponent(this._names.join(","))}&from=${from}&to=${Math.min(end, from + this.window)}&points=2001`; // 2 s with both their ends
     const bytes = await this.app.attempt(this.app.connection.http(path, { as: "bytes" }));
     if (!bytes || turn !== this._turn) return;
     const frame = readRecorded(bytes);
