@@ -108,7 +108,7 @@ class Form:
         values = list(self._struct.unpack_from(data))
         if self._lengths(values) != self._expected:
             return None
-        fields = {}
+        fields: dict[str, Any] = {}
         for name, kind, begin, constants in self._steps:
             if kind == COLUMN:
                 fields[name] = values[begin + 1 : begin + 1 + constants[0]]

@@ -73,8 +73,8 @@ class CouplingServices:
             text = f"axis {axis}: {command} refused: its node is lost; nothing was changed"
             return answered(response, UPSTREAM_LOST, text)
         asked = Command(axis, command, arguments)
-        if error := self._node.why_closed(asked, OF_SERVICES):
-            return answered(response, error.number, error.message)
+        if closed := self._node.why_closed(asked, OF_SERVICES):
+            return answered(response, closed.number, closed.message)
         self._plc.input(asked)
         self._open.append(Call(asked, response, time.monotonic() + PATIENCE))
         return response

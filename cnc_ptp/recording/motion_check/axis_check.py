@@ -13,7 +13,7 @@ from cnc_ptp.parameters.view.axis_view import axis_view
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import StatusBit as B
 from cnc_ptp.protocol.commands import COUPLINGS, HELD_OFF
-from cnc_ptp.recording.motion_check.continuity import PLACES, Setpoints, check_continuity, larger
+from cnc_ptp.recording.motion_check.continuity import PLACES, Setpoints, check_continuity, larger, of_later
 from cnc_ptp.recording.motion_check.findings import Findings, Mask, MotionResult, Numbers
 from cnc_ptp.recording.motion_check.inputs import Columns, MotionInputs, Order
 from cnc_ptp.recording.motion_check.laws import FREE, ON_PATH, STEP, Laws, Stretches, and_next, since
@@ -73,8 +73,13 @@ class AxisCheck:
 
     def _own_laws(self) -> Laws:
         own = self.parameters
-        limits = {"growth": own.acceleration, "reduction": own.deceleration, "jerk": own.jerk}
-        laws = Laws.of(len(self.cycles), **limits, velocity=own.max_velocity)
+        laws = Laws.of(
+            len(self.cycles),
+            growth=own.acceleration,
+            reduction=own.deceleration,
+            jerk=own.jerk,
+            velocity=own.max_velocity,
+        )
         for order, parameters in self._written():
             rows = slice(self.stretches.row(order.cycle), None)
             laws.growth[rows], laws.reduction[rows] = parameters.acceleration, parameters.deceleration
@@ -187,7 +192,7 @@ class AxisCheck:
             if 0 < row < len(self.cycles):
                 switched = still[row] and still[row - 1] and is_power(order)
                 placed[row - 1] |= order.command == "set_position" or switched
-        homed = self.referenced[1:] & ~self.referenced[:-1] & (self.state[:-1] == S.HOMING)
+        homed: Mask = self.referenced[1:] & ~self.referenced[:-1] & (self.state[:-1] == S.HOMING)
         return placed | homed
 
     # rows
@@ -242,8 +247,8 @@ class AxisCheck:
                 moved = 0.5 * points.cycle_time * (points.velocity[row - 1] + points.velocity[row])
                 steps[row] = points.position[row] - points.position[row - 1] - moved
         shift = np.cumsum(steps)
-        for row in np.flatnonzero(self.referenced[1:] & ~self.referenced[:-1]) + 1:
-            shift[row:] -= shift[row]
+        for begin in np.flatnonzero(self.referenced[1:] & ~self.referenced[:-1]) + 1:
+            shift[begin:] -= shift[begin]
         return shift
 
     def _unknown_shift(self) -> Mask:
@@ -305,9 +310,8 @@ class AxisCheck:
         same = rows[1:] & rows[:-1] & self.points.joined & ~self.laws.placed & (factor[1:] == factor[:-1])
         stands = (velocity[1:] == 0.0) & (velocity[:-1] == 0.0)
         wrong = same & ~stands & ~(np.abs(own - wanted) <= blur)
-        shown = [np.concatenate(([0.0], each)) for each in (own, wanted)]
         what = "distance beside that of the master"
-        self.found.above(what, *shown, np.concatenate(([False], wrong)), self.points.length)
+        self.found.above(what, of_later(own), of_later(wanted), np.concatenate(([False], wrong)), self.points.length)
 
 
 def is_power(order: Order) -> bool:

@@ -82,8 +82,7 @@ class _Pairs:
 
     def tell(self, found: Findings, what: str, off: Numbers, bound: Numbers, checked: Mask, units: str) -> None:
         wrong = self.points.joined & checked & ~(np.abs(off) <= bound)
-        shifted = [np.concatenate(([0.0], each)) for each in (off, bound)]
-        found.above(what, *shifted, np.concatenate(([False], wrong)), units)
+        found.above(what, of_later(off), of_later(bound), np.concatenate(([False], wrong)), units)
 
     def acceleration_bound(self) -> tuple[Numbers, Mask]:
         bound = self.jerk * self.points.cycle_time * self.relative + self.blur_a
@@ -119,6 +118,11 @@ class _Pairs:
 
     def relative_part(self, scale: Numbers) -> Numbers:
         return (self.relative - 1.0) * (scale + np.abs(self.dx))
+
+
+def of_later(pairs: Numbers) -> Numbers:
+    """What pairs of neighbouring rows have (n-1,), in the later row of each: (n,)."""
+    return np.concatenate(([0.0], pairs))
 
 
 def larger(column: Numbers) -> Numbers:

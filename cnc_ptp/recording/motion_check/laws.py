@@ -42,7 +42,10 @@ class Laws:
         """The same in all rows."""
         return cls(
             np.full(n, law, dtype=np.int8),
-            *(np.full(n, value) for value in (growth, reduction, jerk, velocity)),
+            np.full(n, growth),
+            np.full(n, reduction),
+            np.full(n, jerk),
+            np.full(n, velocity),
             np.full(n, EXACT),
             np.zeros(n, dtype=bool),
             np.zeros(max(0, n - 1), dtype=bool),

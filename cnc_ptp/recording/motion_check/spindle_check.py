@@ -73,7 +73,7 @@ class SpindleCheck:
     def _placed(self) -> Mask:
         """Pairs with other coordinates: reference, gear, loop opened or closed, power, a fault without power."""
         columns = self.columns
-        changes = (np.diff(columns["gear"].astype(int)) != 0) | (np.diff(columns["referenced"].astype(int)) != 0)
+        changes: Mask = (np.diff(columns["gear"].astype(int)) != 0) | (np.diff(columns["referenced"].astype(int)) != 0)
         changes |= np.diff(self.bits & SWITCHES) != 0
         changes |= (self.state[:-1] == S.DISABLED) & (self.state[1:] != S.DISABLED)
         return changes | ((self.state[1:] == S.HOMING) | (self.state[:-1] == S.HOMING))
