@@ -34,7 +34,6 @@ TOPICS = (
     "graph",
     "service",
     "plc",
-    "web",
     "client",
     "slaves",
     "spindles",

@@ -76,7 +76,8 @@ class SpindleCheck:
         changes: Mask = (np.diff(columns["gear"].astype(int)) != 0) | (np.diff(columns["referenced"].astype(int)) != 0)
         changes |= np.diff(self.bits & SWITCHES) != 0
         changes |= (self.state[:-1] == S.DISABLED) & (self.state[1:] != S.DISABLED)
-        return changes | ((self.state[1:] == S.HOMING) | (self.state[:-1] == S.HOMING))
+        changes |= (self.state[1:] == S.HOMING) | (self.state[:-1] == S.HOMING)
+        return changes
 
     # owner
 
