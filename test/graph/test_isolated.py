@@ -196,14 +196,12 @@ def test_users_of_the_pages_are_read_before_anything_is_started(folder):
 
 
 def test_a_command_that_cannot_be_run(folder):
-    running = Running(folder / "one.yaml", "--isolated", "--composed", "--stay")
+    recording = folder / "entered.mcap"
+    running = Running(folder / "one.yaml", "--isolated", "--composed", "--stay", "--record", recording)
     try:
-        while not Path(f"/proc/{running.process.pid}/ns/net").exists() or os.readlink(
-            f"/proc/{running.process.pid}/ns/net"
-        ) == os.readlink("/proc/self/ns/net"):
-            assert running.process.poll() is None
+        running.wait_until_recorded(recording, 1)
         done = run("enter", "no_such_command", expect=2)
         assert "Error: no_such_command cannot be run: No such file or directory.\n" in done.stderr
     finally:
-        running.process.terminate()
-        running.finish(130)
+        running.process.send_signal(signal.SIGINT)
+        running.finish(0)
