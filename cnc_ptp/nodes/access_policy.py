@@ -20,6 +20,7 @@ from cnc_ptp.nodes.topics import (
     COMMAND,
     COUPLING_SERVICES,
     DIAGNOSTICS,
+    DRIVE_STOPS,
     EMERGENCY_STOP_TOPIC,
     EVENT,
     HEARTBEAT,
@@ -87,7 +88,7 @@ class NodeAccess:
 def machine_access(machine: MachineParameters) -> list[NodeAccess]:
     """All nodes of a machine, and those who command it."""
     units = [unit_access(machine, unit) for unit in unit_kinds(machine)]
-    run = [clock_access(), recorder_access(machine), monitor_access(machine)]
+    run = [clock_access(machine), recorder_access(machine), monitor_access(machine)]
     return [*units, *run, client_access(machine, units), external_plc_access(machine)]
 
 
@@ -105,6 +106,8 @@ def unit_access(machine: MachineParameters, unit: str) -> NodeAccess:
     )
     if kind in STATE_TYPES:
         node.publish.add(state_topic(unit))
+    if kind in ("axis", "spindle"):
+        node.subscribe.add(DRIVE_STOPS)
     if kind == "channel":
         node.publish |= {handshake_topic(unit), offsets_topic(unit), program_topic(unit)}
     if kind == "plc":
@@ -123,14 +126,24 @@ def add_interface(node: NodeAccess, machine: MachineParameters) -> None:
     node.execute |= {TRAJECTORY_ACTION, *(f"{unit}/function_block" for unit in (*machine.axes, *machine.spindles))}
 
 
-def clock_access() -> NodeAccess:
-    reads = {REPORT, HEARTBEAT, block_topic(PLC)}
-    return with_parameters(NodeAccess(CLOCK, publish={TICK, HEARTBEAT}, subscribe=reads))
+def clock_access(machine: MachineParameters) -> NodeAccess:
+    """With the watchdogs of the drives."""
+    reads = {REPORT, HEARTBEAT, block_topic(PLC), *map(block_topic, (*machine.axes, *machine.spindles))}
+    return with_parameters(NodeAccess(CLOCK, publish={TICK, HEARTBEAT, EVENT, DRIVE_STOPS}, subscribe=reads))
 
 
 def recorder_access(machine: MachineParameters) -> NodeAccess:
     """It reads everything that a recording has."""
-    reads = {TICK, EVENT, COMMAND, DIAGNOSTICS, LATENESS, ROSOUT, *(each.topic for each in observed_topics(machine))}
+    reads = {
+        TICK,
+        EVENT,
+        COMMAND,
+        DRIVE_STOPS,
+        DIAGNOSTICS,
+        LATENESS,
+        ROSOUT,
+        *(each.topic for each in observed_topics(machine)),
+    }
     reads |= {block_topic(unit) for unit in unit_kinds(machine)}
     services = {f"{RECORDER}/{name}" for name in RECORDER_SERVICES}
     return with_parameters(NodeAccess(RECORDER, publish={REPORT, EVENT, ROSOUT}, subscribe=reads, reply=services))

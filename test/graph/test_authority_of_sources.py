@@ -5,7 +5,7 @@ import yaml
 from action_msgs.msg import GoalStatus
 from builtin_interfaces.msg import Duration
 from client_support import beside_composed_run
-from graph_support import PTP, run, states_equal, verified
+from graph_support import PTP
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
@@ -117,22 +117,3 @@ def test_topics(client):
     client.shows("x", "override_percent", 100.0)
     client.write("/y/jog", msg.Jog, sequence=1, valid=True, velocity=5.0)
     client.wait_last("y", lambda block: block.set_position[-1] > 5.0, "a jog of an open axis")
-
-
-def test_offline_composed_and_graph_are_equal(tmp_path):
-    """The scenario moves both axes; that of the closed one is refused at the same cycle, and replay repeats it."""
-    file = closed_file(tmp_path, "plc")
-    scenario = tmp_path / "moves.yaml"
-    moves = (f"- {{at: 0.1, to: {axis}, do: move_absolute, target: 5, velocity: 50}}\n" for axis in ("x", '"y"'))
-    scenario.write_text("".join(moves))
-    recordings = [tmp_path / f"{name}.mcap" for name in ("offline", "composed", "graph")]
-    run("simulate", file, "--scenario", scenario, "--record", recordings[0])
-    run("run", file, "--scenario", scenario, "--composed", "--record", recordings[1])
-    run("run", file, "--scenario", scenario, "--record", recordings[2])
-    rule = "the machine file closes it to the PLC (closed_to_plc, P-MACH-00080)"
-    wanted = [(100, "x", "move_absolute", 26218, f"axis x: move_absolute refused: {rule}{END}")]
-    for recording in recordings:
-        assert states_equal(recordings[0], recording) == []
-        refused = [record for record in verified(recording).commands if not record.accepted]
-        found = [(each.cycle, each.target, each.command, each.error_id, each.message) for each in refused]
-        assert found == wanted
