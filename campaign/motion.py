@@ -96,7 +96,8 @@ def limits(machine: MachineParameters, unit: str) -> tuple[float, float]:
 def torn(recorded: Recorded, link: Link, machine: MachineParameters) -> tuple[float, float]:
     """How far actual positions of a master and its slave have left their relation, and how far they may, mm (deg).
 
-    Somebody that is lost is noticed with the next block or the one after it: until then the others go on.
+    Somebody that is lost is noticed with the next block or the one after it: until then the others go on. Then each
+    brakes on its own ramp (P-AXIS-00002): with a factor other than 1 their distances differ.
     """
     found = tracks(recorded)
     master, slave = found[link.master], found[link.slave]
@@ -107,7 +108,16 @@ def torn(recorded: Recorded, link: Link, machine: MachineParameters) -> tuple[fl
     before = min(len(master.cycles), len(slave.cycles))
     lag = np.abs(apart[:before]).max(initial=0.0) if before else 0.0
     reaction = 2 * machine.block_cycles * machine.cycle_time_us * 1e-6
-    return float(np.abs(apart).max()), float(lag + fastest * reaction)
+    ramps = abs(
+        abs(link.factor) * longest_ramp(master, link.master, machine) - longest_ramp(slave, link.slave, machine)
+    )
+    return float(np.abs(apart).max()), float(lag + fastest * reaction + ramps)
+
+
+def longest_ramp(track: Track, axis: str, machine: MachineParameters) -> float:
+    """Distance of a stop from the largest velocity with the deceleration and the jerk of the axis, mm (deg)."""
+    velocity, own = float(np.abs(track.actual_velocity).max()), machine.axes[axis]
+    return 0.5 * velocity**2 / own.deceleration + 0.5 * velocity * own.deceleration / own.jerk
 
 
 def held(values: Values, count: int) -> Values:

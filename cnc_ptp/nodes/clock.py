@@ -14,7 +14,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.machine.runner import CLOCK
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import node_command_line, process
-from cnc_ptp.nodes.drive_watch import DriveWatch
+from cnc_ptp.nodes.drive_watch import FAREWELL, DriveWatch
 from cnc_ptp.nodes.free_run import FreeRunPace
 from cnc_ptp.nodes.handover import Handover
 from cnc_ptp.nodes.polling_node import PollingNode, chain
@@ -37,8 +37,6 @@ START_DELAY = 0.1
 """Seconds between the last ready node and the first tick: writers and readers find each other in both directions."""
 SECOND_CLOCK = 26109
 SECOND_NODE = 26140
-FAREWELL = 0.3
-"""Seconds between the last tick and the end of the clock, so that the last messages arrive."""
 
 
 class ClockNode(PollingNode):

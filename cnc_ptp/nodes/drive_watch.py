@@ -34,6 +34,8 @@ from cnc_ptp.protocol.event_values import event_values
 from cnc_ptp.wire.block_codec import codec_of
 from cnc_ptp.wire.stamps import Stamps
 
+FAREWELL = 0.3
+"""Seconds between the last tick, or the last stop of a drive, and the end of the clock: what it has said arrives."""
 DRIVE_BRAKED = 26265
 DRIVE_STOOD = 26266
 
@@ -70,7 +72,7 @@ class DriveWatch:
         self._seconds = machine.watchdog_ms / 1000.0
         self._watchdog = Watchdog(self._units, seconds=self._seconds)
         self._cycle_time = machine.cycle_time_us * 1e-6
-        self._due = 0.0
+        self._due = self._stopped_at = 0.0
         self._publisher = node.create_publisher(msg.DriveStop, DRIVE_STOPS, EVENTS)
         self._events = EventPublisher(node)
         node.input_period = float("inf")  # this class says when
@@ -110,7 +112,7 @@ class DriveWatch:
         for unit in self._watchdog.silent(moved, begun=True):
             self._stop(unit, stamps)
             moved.remove(unit)
-        return not moved
+        return not moved and time.monotonic() - self._stopped_at > FAREWELL
 
     def _take(self, unit: str, data: bytes) -> None:
         self._newest[unit] = data
@@ -121,6 +123,7 @@ class DriveWatch:
         self._units.remove(unit)
         if last is None:  # no block has ever come: the drive has not been moved
             return
+        self._stopped_at = time.monotonic()
         stop = own_stop(last.profile, self._cycle_time)
         self._publish(unit, last.cycle + 1, stop, stamps)
         place, length = stop.positions[-1], self._length_unit(unit)

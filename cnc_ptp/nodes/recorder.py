@@ -177,9 +177,10 @@ class RecorderNode(PollingNode):
 
     @property
     def settled(self) -> bool:
-        """Nothing has arrived for a while, and the clock has ended: it may have to say that drives have braked."""
-        clock_ended = not any(each.get_publisher_count() for each in self._needed[:1])
-        return clock_ended and time.monotonic() - self._heard > QUIET
+        """Nothing has arrived for a while since the clock has ended: it may have to say that drives have braked."""
+        if any(each.get_publisher_count() for each in self._needed[:1]):
+            self._heard = time.monotonic()
+        return time.monotonic() - self._heard > QUIET
 
     def _report_ready(self) -> None:
         if self._recording is not None:
