@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -26,15 +27,17 @@ _hooked: list[bool] = []
 
 @contextmanager
 def guarded(folder: Path) -> Iterator[list[str]]:
-    """What was tried outside of the folder meanwhile; it is refused with an OSError."""
+    """What was tried outside of the folder meanwhile; it is refused with an OSError. Temporary files are within."""
     if not _hooked:
         sys.addaudithook(_look)  # for good: a hook cannot be taken away
         _hooked.append(True)
     _outside.clear()
     _folder.append(f"{folder.resolve()}{os.sep}")
+    temporary, tempfile.tempdir = tempfile.tempdir, str(folder.resolve())
     try:
         yield _outside
     finally:
+        tempfile.tempdir = temporary
         _folder.pop()
 
 

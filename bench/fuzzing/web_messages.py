@@ -151,10 +151,8 @@ class Site:
         """Until all that was begun has been answered."""
         while self.hub._kept:
             await asyncio.wait({*self.hub._kept}, timeout=0.05)
-            if self.hub.face is not None:
-                self.hub.tell(self.hub.face)
-        if self.hub.face is not None:
-            self.hub.tell(self.hub.face)
+            self.hub._tell()
+        self.hub._tell()
 
     def take(self, text: str) -> list[Mapping[str, Any]]:
         """What the page gets for a message."""

@@ -27,6 +27,8 @@ class RecordedMotion:
         """The last ones: of the test, and those that its module has made before."""
         self._known: dict[Path, tuple[int, int]] = {}
         self.checked = 0
+        self.found: list[str] = []
+        """Violations that are no error of their tests."""
         self.refused: Counter[int] = Counter()
         """By error number."""
 
@@ -58,4 +60,5 @@ class RecordedMotion:
     def summary(self) -> str:
         """A line for the end of the test run."""
         why = ", ".join(f"{number} x P-ERR-{error}" for error, number in sorted(self.refused.items()))
-        return f"motion of {self.checked} recordings checked" + (f"; not of {why}" if why else "")
+        checked = f"motion of {self.checked} recordings checked" + (f"; not of {why}" if why else "")
+        return "\n".join([f"{checked}; {len(self.found)} with violations", *self.found])
