@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import os
+import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import CancelledError
@@ -17,6 +18,8 @@ from cnc_ptp.sweep.variant_run import Job, compute, failed
 
 PATIENCE = 10.0
 """s for a scheduler that does not answer, or has no worker."""
+RESTART = 120.0
+"""s within which a worker process of this computer that has died is there again."""
 GLANCE = 0.2
 """s between two looks at whether the sweep is to end."""
 IN_STOCK = 2
@@ -38,6 +41,7 @@ class Pool:
         self._distributed = sweep_package("distributed")
         logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what counts is said by errors and rows
         self._cluster: Any = None
+        self._worked_at = time.monotonic()
         self._client: Any = self._connected(scheduler) if scheduler else self._started(workers or os.cpu_count() or 1)
 
     def _started(self, workers: int) -> Any:
@@ -105,14 +109,32 @@ class Pool:
             future.cancel()
 
     def _done(self, running: Iterable[Any]) -> list[Any]:
-        """Those that are finished, at most GLANCE later. Raises CncError 26181 when the scheduler is gone."""
+        """Those that are finished, at most GLANCE later. Raises CncError 26181 when the scheduler is gone, 26186 when
+        no worker of this computer comes back.
+        """
         try:
             done = self._distributed.wait([*running], timeout=GLANCE, return_when="FIRST_COMPLETED").done
         except (TimeoutError, self._distributed.TimeoutError):
             done = set()
         except CancelledError:
             raise CncError(NO_SCHEDULER, "the scheduler is gone", KEPT) from None
+        if self._cluster is not None:
+            self._require_worker()
         return sorted(done, key=lambda future: str(future.key))
+
+    def _require_worker(self) -> None:
+        """Asks for the lost ones of this computer: Dask gives up one that dies while it starts.
+
+        Raises CncError 26186 when none comes.
+        """
+        now = time.monotonic()
+        if self._client.nthreads():
+            self._worked_at = now
+            return
+        self._cluster.scale(len(self._cluster.worker_spec))
+        if now - self._worked_at > RESTART:
+            reason = f"no worker process lives, and none has started for {RESTART:g} s"
+            raise CncError(UNFIT_WORKERS, reason, KEPT)
 
     def _killed(self, future: Any) -> bool:
         return isinstance(future.exception(), self._distributed.KilledWorker)

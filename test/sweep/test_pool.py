@@ -9,6 +9,7 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
+import dask
 import psutil
 import pytest
 from commands_support import MILL, ROOT
@@ -60,6 +61,26 @@ def test_a_variant_that_kills_its_workers_is_a_row_and_the_others_are_computed(t
     assert [row.error for row in sweep.results.rows] == [0, 26188, 0, 0, 0]
     row = sweep.results.rows[1]
     assert (row.error, row.message) == (26188, "the worker process dies whenever it computes this variant")
+
+
+def test_a_worker_that_dask_has_given_up_is_started_again(tmp_path, expected):
+    sweep = sweep_in(tmp_path)
+    with dask.config.set({"distributed.deploy.lost-worker-timeout": "1s"}), Pool(1, None) as pool:
+        (nanny,) = pool._cluster.workers.values()
+        pool._cluster.sync(nanny.close)
+        assert sweep.run(lambda: pool, never, nothing)
+    assert sweep.target.read_bytes() == expected
+
+
+def test_a_sweep_without_workers_ends(tmp_path, monkeypatch):
+    """It would wait for ever for processes that Dask no longer starts."""
+    monkeypatch.setattr(pool_module, "RESTART", 0.5)
+    pool = Pool(1, None)
+    pool._cluster.scale(0)
+    with pytest.raises(CncError) as caught:
+        sweep_in(tmp_path).run(lambda: pool, never, nothing)
+    kept = "what is finished is kept, the same command continues"
+    assert str(caught.value) == f"P-ERR-26186 no worker process lives, and none has started for 0.5 s; {kept}"
 
 
 def test_a_worker_with_another_kernel_is_refused(tmp_path):
