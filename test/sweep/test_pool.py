@@ -9,7 +9,6 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
-import dask
 import psutil
 import pytest
 from commands_support import MILL, ROOT
@@ -65,7 +64,7 @@ def test_a_variant_that_kills_its_workers_is_a_row_and_the_others_are_computed(t
 
 def test_a_worker_that_dask_has_given_up_is_started_again(tmp_path, expected):
     sweep = sweep_in(tmp_path)
-    with dask.config.set({"distributed.deploy.lost-worker-timeout": "1s"}), Pool(1, None) as pool:
+    with Pool(1, None) as pool:
         (nanny,) = pool._cluster.workers.values()
         pool._cluster.sync(nanny.close)
         assert sweep.run(lambda: pool, never, nothing)
