@@ -27,7 +27,7 @@ def required():
                 yield Requirement(text)
 
 
-@pytest.mark.parametrize("requirement", required(), ids=lambda requirement: requirement.name)
+@pytest.mark.parametrize("requirement", [*required()], ids=lambda requirement: requirement.name)
 def test_a_requirement_is_locked(requirement):
     """After a change of a requirement: make lock."""
     version = locked().get(canonicalize_name(requirement.name))

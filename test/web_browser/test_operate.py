@@ -112,8 +112,8 @@ def test_a_jog_is_refused_where_messages_take_too_long(look, fake):
     page.evaluate("app.jogger.start('x', 10)")
     page.wait_for_selector(".notice >> text=/Messages to the server and back take [0-9]+ ms, more than 150 ms/")
     assert jogs(fake) == []
-    eventually(page, lambda: len(fake.pings) >= 2)
-    assert "round_trip" not in fake.pings[0] and fake.pings[-1]["round_trip"] >= 300
+    eventually(page, lambda: fake.pings[-1].get("round_trip", 0) >= 300)
+    assert "round_trip" not in fake.pings[0]
     fake.delay = 0.0
     until(page, "app.roundTrip.time < 150")
     page.evaluate("app.jogger.start('x', 10)")
