@@ -1,7 +1,7 @@
 """Refusals of a closed unit: offline, composed and in the graph the same, to the bit."""
 
+from authority_support import END, closed_file
 from graph_support import run, states_equal, verified
-from test_authority_of_sources import END, closed_file
 
 
 def test_offline_composed_and_graph_are_equal(tmp_path):

@@ -1,11 +1,10 @@
 """Command authority in a graph: services, actions, parameters and topics of a closed axis, each by the way it comes."""
 
 import pytest
-import yaml
 from action_msgs.msg import GoalStatus
+from authority_support import END, closed_file
 from builtin_interfaces.msg import Duration
 from client_support import beside_composed_run
-from graph_support import PTP
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
@@ -15,19 +14,6 @@ from cnc_ptp.nodes.topics import TRAJECTORY_ACTION, TRAJECTORY_TOPIC
 
 SERVICES_RULE = "the machine file closes it to services (closed_to_services, P-MACH-00083)"
 TOPICS_RULE = "the machine file closes it to topics (closed_to_topics, P-MACH-00082)"
-END = "; nothing was changed"
-
-
-def closed_file(folder, *sources):
-    """A machine of two axes, x closed to some sources."""
-    machine = yaml.load(PTP.read_text(), yaml.BaseLoader)
-    for axis in ("z", "c"):
-        del machine[f"/{axis}"]
-    machine["/machine"]["ros__parameters"]["axes"] = ["x", "y"]
-    machine["/machine"]["ros__parameters"] |= {f"closed_to_{source}": ["x"] for source in sources}
-    file = folder / "closed.yaml"
-    file.write_text(yaml.dump(machine).replace("'", "").replace("- y\n", '- "y"\n'))
-    return file
 
 
 @pytest.fixture(scope="module")
