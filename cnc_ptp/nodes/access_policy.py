@@ -129,7 +129,7 @@ def add_interface(node: NodeAccess, machine: MachineParameters) -> None:
 def clock_access(machine: MachineParameters) -> NodeAccess:
     """With the watchdogs of the drives."""
     reads = {REPORT, HEARTBEAT, block_topic(PLC), *map(block_topic, (*machine.axes, *machine.spindles))}
-    return with_parameters(NodeAccess(CLOCK, publish={TICK, HEARTBEAT, EVENT, DRIVE_STOPS}, subscribe=reads))
+    return with_parameters(NodeAccess(CLOCK, publish={TICK, HEARTBEAT, EVENT, DRIVE_STOPS, ROSOUT}, subscribe=reads))
 
 
 def recorder_access(machine: MachineParameters) -> NodeAccess:
