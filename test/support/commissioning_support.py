@@ -27,7 +27,7 @@ def trace_of(axis="x", cycle=None, cycle_time=T, mean_velocity=False, **columns)
     rows |= columns
     if cycle is not None:
         rows["cycle"] = cycle
-    given = {name: row for name, row in rows.items() if row is not None}
+    given = {name: np.array(row) for name, row in rows.items() if row is not None}
     return AxisTrace.of_rows(axis, cycle_time, given, mean_velocity=mean_velocity)
 
 
