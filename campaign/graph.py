@@ -110,14 +110,14 @@ def shared_memory() -> set[str]:
     return {f"/dev/shm/{each.name}" for each in Path("/dev/shm").iterdir()} if Path("/dev/shm").is_dir() else set()
 
 
-def free_domain(wish: int) -> int:
-    """A ROS domain of 101 … 200 on which no run is under way."""
-    for number in range(wish, wish + 100):
-        domain = 101 + number % 100
+def free_domain(wish: int, *, first: int = 101, count: int = 100) -> int:
+    """One of `count` ROS domains from `first` on, 101 … 200, on which no run is under way."""
+    for number in range(wish, wish + count):
+        domain = first + number % count
         with socket.socket(socket.AF_UNIX) as claim:
             try:
                 claim.bind(f"\0{CLAIM}{domain}")
             except OSError:
                 continue
             return domain
-    raise RuntimeError("100 runs at once")
+    raise RuntimeError(f"{count} runs at once")

@@ -1,11 +1,11 @@
 """Gives every test module a ROS domain of its own."""
 
 import os
-import socket
 from itertools import count
 
 import pytest
 
+from campaign.graph import free_domain
 from cnc_ptp.client import graph_link
 from cnc_ptp.commands.client import jog, status
 from cnc_ptp.nodes.client import machine_client
@@ -22,7 +22,7 @@ def ros_domain():
     before = dict(os.environ)
     for name in FROM_OUTSIDE:
         os.environ.pop(name, None)
-    number = free_domain(next(WISHES))
+    number = free_domain(next(WISHES), first=1, count=90)
     os.environ["ROS_DOMAIN_ID"] = str(number)
     yield number
     os.environ.clear()
@@ -36,16 +36,3 @@ def patient_clients():
         for module in (machine_client, graph_link, jog, status):
             patch.setattr(module, "PATIENCE", PATIENT)
         yield
-
-
-def free_domain(wish):
-    """A domain on which no run is under way, 1 … 90."""
-    for number in range(wish, wish + 90):
-        domain = 1 + number % 90
-        with socket.socket(socket.AF_UNIX) as claim:
-            try:
-                claim.bind(f"\0cnc_ptp/domain/{domain}")
-            except OSError:
-                continue
-            return domain
-    raise AssertionError("90 runs at once")

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import rclpy
 from graph_support import MILL, PTP, Running, kill, one_axis_machine, verified, wait_until_gone
+from spin_support import spin_until
 
 from cnc_ptp import msg
 from cnc_ptp.nodes import process
@@ -73,11 +74,7 @@ class Bus:
         return bool(self.stops)
 
     def spin_until(self, condition):
-        for _ in range(3000):
-            if condition():
-                return
-            self.executor.spin_once(timeout_sec=0.01)
-        raise AssertionError("nothing more comes")
+        spin_until(self.executor, condition)
 
     def stop_of(self, unit):
         self.spin_until(lambda: self.look() and any(stop.unit == unit for stop in self.stops) and self.events)

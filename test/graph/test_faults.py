@@ -1,9 +1,12 @@
 """Faults of starting and recording that a good run never meets, with their exact texts."""
 
+from functools import partial
+
 import pytest
 import rclpy
 from graph_support import MILL, PTP, run
 from rclpy.node import Node
+from spin_support import spin_until
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
@@ -50,14 +53,7 @@ def around():
         nodes.append(make())
         for node in nodes:
             executor.add_node(node)
-        return (*nodes, spin_until)
-
-    def spin_until(condition):
-        for _ in range(1000):
-            if condition():
-                return
-            executor.spin_once(timeout_sec=0.01)
-        raise AssertionError("nothing more comes")
+        return (*nodes, partial(spin_until, executor))
 
     yield start
     for node in nodes:

@@ -7,6 +7,7 @@ import pytest
 import rclpy
 from graph_support import PTP
 from rclpy.node import Node
+from spin_support import spin_until
 
 from cnc_ptp import msg
 from cnc_ptp.nodes import process
@@ -60,11 +61,7 @@ class Bench:
         self.spin_until(lambda: all(publisher.get_subscription_count() for publisher in publishers))
 
     def spin_until(self, condition):
-        for _ in range(3000):
-            if condition():
-                return
-            self.executor.spin_once(timeout_sec=0.01)
-        raise AssertionError("nothing more comes")
+        spin_until(self.executor, condition)
 
     def run_blocks(self, number):
         """So many blocks in good order, the move in the first one."""
