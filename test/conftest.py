@@ -1,6 +1,5 @@
 """Helper modules (test/support), the packages `bench` and `figures`; property tests are seeded and never fail on time."""
 
-import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -10,8 +9,8 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 HERE = Path(__file__).parent
-MOTION = pytest.StashKey[str]()
-"""What was checked of the motion of recordings."""
+MOTION = pytest.StashKey[list[str]]()
+"""What was checked of the motion of recordings, a line for each process."""
 sys.path[:0] = [str(HERE / "support"), str(HERE.parent)]
 
 settings.register_profile("project", deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
@@ -52,15 +51,13 @@ def recorded_motion(tmp_path_factory: pytest.TempPathFactory, pytestconfig: pyte
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(tmp_path_factory, "mktemp", mktemp)
         yield motion
-    pytestconfig.stash[MOTION] = motion.summary()
+    pytestconfig.stash[MOTION] = [motion.summary()]
 
 
 @pytest.fixture(autouse=True)
 def motion_of_recordings(recorded_motion: Any, request: pytest.FixtureRequest) -> Iterator[None]:
-    """Says of each recording of the test whether it has a step, exceeds a limit or moves without power.
+    """No recording of the test has a step, exceeds a limit or moves without power (recording/motion_check).
 
-    With MOTION_STRICT=1 a violation is an error, otherwise a warning: the checker does not know yet who owns a spindle
-    of a channel in each recording, nor the kind of motion of a recording that begins within it (recording/motion_check).
     `motion_unchecked("why")` marks a test that bends recordings on purpose.
     """
     yield
@@ -69,14 +66,23 @@ def motion_of_recordings(recorded_motion: Any, request: pytest.FixtureRequest) -
     files = recorded_motion.new_files()
     if request.node.get_closest_marker("motion_unchecked") is None:
         found = recorded_motion.violations(files)
-        if os.environ.get("MOTION_STRICT") == "1":
-            assert not found, "\n".join(found)
-        recorded_motion.found += [f"{request.node.nodeid}: {text}" for text in found]
+        assert not found, "\n".join(found)
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    """A worker of pytest-xdist gives its line to the process that prints the summary."""
+    if hasattr(session.config, "workeroutput"):
+        session.config.workeroutput["motion"] = session.config.stash.get(MOTION, [])
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node: Any) -> None:
+    node.config.stash.setdefault(MOTION, []).extend(getattr(node, "workeroutput", {}).get("motion", []))
 
 
 def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
-    if MOTION in config.stash:
-        terminalreporter.write_line(config.stash[MOTION])
+    for line in config.stash.get(MOTION, []):
+        terminalreporter.write_line(line)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -64,6 +64,8 @@ def record(path: Path, machine: Path, program: str, scenario: str = "", accelera
     bench = MachineBench(program, scenario, machine=load_machine(text, "machine.yaml")).run()
     assert not bench.failed
     with Recording(path, text) as recording:
+        for each in bench.records:
+            recording.command(each)
         for blocks in zip(*bench.blocks.values(), strict=True):
             for name, block in zip(bench.blocks, blocks, strict=True):
                 recording.block(name, block)

@@ -150,6 +150,80 @@ def test_a_spindle_that_nobody_turns(inputs: MotionInputs) -> None:
     assert (violation.unit, violation.what, violation.cycle) == ("s", "speeds up without an owner", 1)
 
 
+def test_a_spindle_whose_channel_is_gone(inputs: MotionInputs) -> None:
+    """Behind its last cycle and the time of the watchdog the spindle may only slow down: here it keeps its speed."""
+    inputs.channels["channel"] = inputs.channels["channel"][:100]
+    (start,) = (order for order in inputs.orders["s"] if order.command == "start")
+    inputs.orders["s"] = [type(start)(0, "start", {"source": "channel"})]
+    found_there = [each for each in check_motion(inputs).violations if each.unit == "s"]
+    machine = inputs.machine
+    patience = machine.watchdog_ms * 1000 // machine.cycle_time_us + 3 * machine.block_cycles
+    assert (found_there[0].what, found_there[0].cycle) == ("turns for a channel that is gone", 100 + patience)
+
+
+@pytest.mark.parametrize(
+    ("commands", "wanted"),
+    [
+        ([("stop", {"source": "plc"})], True),
+        ([("stop", {"source": "plc", "own": True})], False),
+        ([("set_emergency_stop", {"enabled": True})], True),
+        ([("set_emergency_stop", {"enabled": False})], False),
+    ],
+)
+def test_a_stop_ends_ownership_where_it_has_an_effect(
+    inputs: MotionInputs, commands: list[tuple[str, dict[str, Any]]], wanted: bool
+) -> None:
+    """The spindle speeds up; a stop of somebody else that counts for his own commands alone does not end that."""
+    (start,) = (order for order in inputs.orders["s"] if order.command == "start")
+    ended = [type(start)(10, *each) for each in commands]
+    inputs.orders["s"] = [type(start)(0, "start", {"source": "channel"}), *ended]
+    violations = [each for each in check_motion(inputs).violations if each.what == "speeds up without an owner"]
+    assert bool(violations) == wanted
+    assert {each.cycle for each in violations} <= {11}
+
+
+def test_velocity_without_power(inputs: MotionInputs) -> None:
+    result = bent(inputs, "x", "actual_velocity", 990, 50.0)
+    assert ("x", "actual velocity without power", 990, 1) in found(result)
+
+
+def test_beyond_the_negative_soft_limit(inputs: MotionInputs) -> None:
+    """The same motion mirrored."""
+    names = ("set_position", "set_velocity", "set_acceleration", "actual_position", "actual_velocity")
+    columns = {**inputs.axes["x"]} | {name: -inputs.axes["x"][name] for name in names}
+    limit = inputs.machine.axes["x"].soft_limit_negative
+    columns["set_position"] = columns["set_position"] + (limit + 5.0)
+    inputs.axes["x"] = columns
+    (violation,) = (each for each in check_motion(inputs).violations if "soft limit" in each.what)
+    first = int(columns["cycle"][np.flatnonzero(columns["set_position"] < limit)[0]])
+    assert (violation.what, violation.cycle, violation.limit) == ("beyond the negative soft limit", first, limit)
+
+
+def test_motion_without_commands_is_not_guessed(path: Path, inputs: MotionInputs) -> None:
+    """A recording of blocks alone says nothing about who has commanded what moves."""
+    with OpenRecording(path) as recording:
+        recording.topics = {name: topic for name, topic in recording.topics.items() if name != "/commands"}
+        with pytest.raises(CncError) as refused:
+            read_inputs(recording)
+    text = f"P-ERR-26264 recording {path}: was recorded without /commands; no motion was checked"
+    assert str(refused.value) == text
+
+
+def test_a_recording_that_begins_within_a_trajectory(tmp_path: Path) -> None:
+    """Its kinks are meant, but the command that says so was before the recording."""
+    machine = ROOT / "config" / "ptp.yaml"
+    whole = make_run(tmp_path / "run.mcap", (ROOT / "examples" / "trajectory.yaml").read_text(), machine=machine)
+    with OpenRecording(whole) as recording:
+        late = read_inputs(recording)
+    assert check_motion(late).violations == []
+    for units in (late.axes, late.spindles):
+        for name, columns in units.items():
+            begin = int(np.searchsorted(columns["cycle"], 1000))
+            units[name] = {key: column[begin:] for key, column in columns.items()}
+    late.orders = {unit: [each for each in orders if each.cycle >= 1000] for unit, orders in late.orders.items()}
+    assert check_motion(late).violations == []
+
+
 def test_an_axis_that_starts_behind_a_stop(inputs: MotionInputs) -> None:
     (move,) = (order for order in inputs.orders["y"] if order.command == "move_absolute")
     inputs.orders["y"].remove(move)

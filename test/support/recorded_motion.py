@@ -12,11 +12,10 @@ from pathlib import Path
 from cnc_ptp.errors import CncError
 from cnc_ptp.recording.motion_check.check import check_recording
 
-MARK = "motion_unchecked"
 RECENT = 6
 """Folders that are looked through after each test."""
 LARGEST = 64_000_000
-"""Bytes of a recording that is checked; more than that takes a second."""
+"""Bytes of a recording that is checked: a longer one would take longer than its test."""
 
 
 class RecordedMotion:
@@ -27,8 +26,6 @@ class RecordedMotion:
         """The last ones: of the test, and those that its module has made before."""
         self._known: dict[Path, tuple[int, int]] = {}
         self.checked = 0
-        self.found: list[str] = []
-        """Violations that are no error of their tests."""
         self.refused: Counter[int] = Counter()
         """By error number."""
 
@@ -60,5 +57,4 @@ class RecordedMotion:
     def summary(self) -> str:
         """A line for the end of the test run."""
         why = ", ".join(f"{number} x P-ERR-{error}" for error, number in sorted(self.refused.items()))
-        checked = f"motion of {self.checked} recordings checked" + (f"; not of {why}" if why else "")
-        return "\n".join([f"{checked}; {len(self.found)} with violations", *self.found])
+        return f"motion of {self.checked} recordings checked" + (f"; not of {why}" if why else "")

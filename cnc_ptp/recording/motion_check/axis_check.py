@@ -158,9 +158,17 @@ class AxisCheck:
             laws.permit(path, STEP)
         laws.permit(self.added, STEP)
         laws.permit(self.external, FREE)
+        self._take_unknown()
         self._take_couplings()
         self._take_homings()
         laws.placed |= self._placed()
+
+    def _take_unknown(self) -> None:
+        """Of a recording that begins within a motion nobody knows how it was commanded: its velocity is limited."""
+        if len(self.cycles) and self.cycles[0] > 0 and not self.resting[0]:
+            rows = self.stretches.of(int(self.cycles[0]))
+            self.laws.permit(rows, FREE)
+            self.laws.growth[rows] = self.laws.reduction[rows] = inf
 
     def _take_couplings(self) -> None:
         """A slave has no limits of its own; decoupled in motion it keeps its velocity."""

@@ -42,8 +42,9 @@ def _count(result: MotionResult, name: str, cycles: int) -> None:
 
 
 def path_steps(inputs: MotionInputs) -> bool:
-    """A channel has, or a program selects, a path whose acceleration steps."""
-    if any(channel.slope == "STEP" for channel in inputs.machine.channels.values()):
+    """A channel has, or a program selects, a path whose acceleration steps; one begun before the recording may, too."""
+    late = any(len(columns["cycle"]) and columns["cycle"][0] > 0 for columns in inputs.axes.values())
+    if late or any(channel.slope == "STEP" for channel in inputs.machine.channels.values()):
         return True
     texts = [
         str(order.arguments)

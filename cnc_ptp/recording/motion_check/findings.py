@@ -40,7 +40,7 @@ class Violation:
 
 @dataclass(slots=True)
 class MotionResult:
-    """Result of a check. `told`: limits exceeded and positions set by a command that says so.
+    """Result of a check. `told`: limits exceeded by a command that says so, at most MOST of one kind and unit.
 
     `units`: those that were checked; `cycles`: of all of them. `further`: violations beyond those that are listed.
     """

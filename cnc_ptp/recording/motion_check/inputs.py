@@ -31,7 +31,6 @@ AXIS_FIELDS = (
     "set_position",
     "set_velocity",
     "set_acceleration",
-    "set_jerk",
     "actual_position",
     "actual_velocity",
     "state",
@@ -43,13 +42,12 @@ SPINDLE_FIELDS = (
     "set_speed_rpm",
     "set_acceleration_deg_s2",
     "set_position_deg",
-    "actual_speed_rpm",
     "gear",
     "referenced",
     "state",
     "status_bits",
-    "error_id",
 )
+COMMANDS = "/commands"
 COMMAND_FIELDS = ("cycle", "target", "command", "arguments_json", "accepted")
 
 
@@ -105,6 +103,7 @@ def read_inputs(recording: OpenRecording) -> MotionInputs:
     for topic in units[CHANNEL_STATE]:
         inputs.channels[_unit(topic)] = np.sort(recording.columns(topic, "cycle")["cycle"].astype(np.int64))
     _require_parameters(recording, inputs)
+    _require_commands(recording, inputs)
     inputs.orders = orders_by_unit(_commands(recording))
     return inputs
 
@@ -138,10 +137,19 @@ def _columns(recording: OpenRecording, topic: str, fields: Sequence[str]) -> Col
     return in_order({name: columns[name] for name in fields})
 
 
+def _require_commands(recording: OpenRecording, inputs: MotionInputs) -> None:
+    """What moves from the first cycle on was commanded."""
+    moved = any(columns["set_velocity"].any() for columns in inputs.axes.values())
+    moved |= any(columns["set_speed_rpm"].any() for columns in inputs.spindles.values())
+    if moved and COMMANDS not in recording.topics:
+        reason = f"recording {recording.path}: was recorded without {COMMANDS}"
+        raise CncError(LACKS_FIELDS, reason, UNCHECKED)
+
+
 def _commands(recording: OpenRecording) -> list[tuple[int, str, str, str, bool]]:
-    if "/commands" not in recording.topics:
+    if COMMANDS not in recording.topics:
         return []
-    columns = recording.columns("/commands", *COMMAND_FIELDS)
+    columns = recording.columns(COMMANDS, *COMMAND_FIELDS)
     return list(zip(*(columns[name] for name in COMMAND_FIELDS), strict=True))
 
 

@@ -13,7 +13,7 @@ from cnc_ptp.protocol.spindle_states import SpindleBit as B
 from cnc_ptp.recording.motion_check.axis_check import setpoints_of
 from cnc_ptp.recording.motion_check.continuity import check_continuity
 from cnc_ptp.recording.motion_check.findings import Findings, Mask, MotionResult
-from cnc_ptp.recording.motion_check.inputs import MotionInputs
+from cnc_ptp.recording.motion_check.inputs import MotionInputs, Order
 from cnc_ptp.recording.motion_check.laws import FREE, ON_PATH, STEP, Laws, Stretches, and_next
 from cnc_ptp.recording.motion_check.limits import check_limits, check_numbers, check_rest
 
@@ -121,13 +121,19 @@ class SpindleCheck:
         for unit in self._leaders():
             late = bool(len(self.cycles)) and self.cycles[0] > 0
             of_unit = np.full(len(self.cycles), late)
+            commander = ""
             for order in self.inputs.orders_of(unit):
-                row = stretches.row(order.cycle)
-                if order.command in STARTS or order.arguments.get("homes"):
-                    of_unit[row:] = True
-                elif order.command in STOPS:
+                row, source = stretches.row(order.cycle), str(order.arguments.get("source", ""))
+                if order.command in STARTS:
+                    of_unit[row:], commander = True, source
+                elif order.command in STOPS and not is_without_effect(order, source, commander):
                     of_unit[row + 1 :] = False
             owned |= of_unit
+        return owned | self._homes()
+
+    def _homes(self) -> Mask:
+        """A spindle that homes before it stops searches for its marker, also where a stop has begun that."""
+        owned: Mask = self.state == S.HOMING
         return owned
 
     def _leaders(self) -> set[str]:
@@ -142,7 +148,14 @@ class SpindleCheck:
         return leaders
 
 
+def is_without_effect(order: Order, source: str, commander: str) -> bool:
+    """A stop that counts only while nobody else has commanded the spindle since, and the end of an emergency stop."""
+    if order.command == "set_emergency_stop":
+        return order.arguments.get("enabled") is False
+    return order.arguments.get("own") is True and commander not in ("", source)
+
+
 def strongest(gear: GearParameters) -> float:
-    """The largest acceleration of a gear, deg/s²: of its ramps, its curve, its path."""
+    """The largest acceleration of a gear, deg/s²: of its ramps and its curve."""
     of_curve = 0.0 if gear.curve is None else max(gear.curve.maximum, gear.curve.constant, gear.curve.minimum)
     return max(gear.acceleration, gear.deceleration, gear.emergency_deceleration, of_curve)
