@@ -19,6 +19,7 @@ WITHOUT_NODES = {
     "identify": "nothing was made",
     "check": "nothing was checked",
     "replay": "nothing was computed",
+    "verify": "nothing was checked",
     "diff": "nothing was compared",
     "plot": "nothing was drawn",
     "layout": "nothing was written",

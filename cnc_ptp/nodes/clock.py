@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from typing import Any
 
 import click
+from rclpy.serialization import deserialize_message
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
@@ -86,11 +87,16 @@ class ClockNode(PollingNode):
         self._publisher = self.create_publisher(msg.CycleTick, TICK, BLOCKS)
         self._heartbeat_publisher = self.create_publisher(msg.BlockReport, HEARTBEAT, BLOCKS)
         self.create_subscription(msg.BlockReport, REPORT, self._on_report, BLOCKS)
-        self.create_subscription(msg.BlockReport, HEARTBEAT, self._on_heartbeat, BLOCKS)
         self._handover = handover
         self._plc = None
-        self._drives = None if handover is not None else DriveWatch(self, machine)
+        self._turn = min(TURN, self._watchdog.seconds / 4.0) if handover is None else 0.0
+        self._drives = None
         """In one process drives end together with all that could still be recorded."""
+        if handover is None:
+            self._drives = DriveWatch(self, machine)
+            self.poll_input(msg.BlockReport, HEARTBEAT, self._take_heartbeat, BLOCKS)
+        else:
+            self.create_subscription(msg.BlockReport, HEARTBEAT, self._on_heartbeat, BLOCKS)
         self._must_settle = self._ends = False
         take = chain(codec_of(PlcBlock).decode, self._on_plc)
         if handover is not None:
@@ -106,9 +112,8 @@ class ClockNode(PollingNode):
         ended = self._ended_at is not None and time.monotonic() - self._ended_at > FAREWELL
         return ended and (not self._must_settle or self._drives_settled())
 
-    @property
-    def settled(self) -> bool:
-        """After a signal to end no more ticks are issued, and no drive is left in motion."""
+    def end_settled(self) -> bool:
+        """After a signal to end: issues no more ticks; True when no drive is left in motion."""
         self._ends = True
         return self._started_at is None or self._drives_settled()
 
@@ -153,7 +158,7 @@ class ClockNode(PollingNode):
 
         Where a tick computes the machine, each one is followed by a turn of the executor, however late the run is.
         """
-        turn = time.monotonic() + (TURN if self._handover is None else 0.0)
+        turn = time.monotonic() + self._turn
         while self._ended_at is None:
             if time.monotonic() >= self._due_at():
                 self._tick(int(self._due_at() * 1e9))
@@ -228,6 +233,10 @@ class ClockNode(PollingNode):
         elif self._watchdog.heard(message.source):
             self._pace.heard(message.source, message.first_cycle)
 
+    def _take_heartbeat(self, data: bytes) -> None:
+        """With the blocks, so that whoever lives has been heard before the silent ones are looked for."""
+        self._on_heartbeat(deserialize_message(data, msg.BlockReport))
+
     def _on_heartbeat(self, message: msg.BlockReport) -> None:
         self._watchdog.heard(message.source)
         if self._drives is not None:
@@ -266,7 +275,7 @@ def command(machine: str, duration: float | None, wait_for: tuple[str, ...], fre
         make,
         name=CLOCK,
         done=lambda node: node.done,
-        settled=lambda node: node.settled,
+        settled=lambda node: node.end_settled(),
         wait=lambda node: node.wait_time(),
         after=lambda node: node.advance(),
     )

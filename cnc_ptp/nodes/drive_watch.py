@@ -24,7 +24,7 @@ from cnc_ptp.errors import Value
 from cnc_ptp.motion.profile import Profile
 from cnc_ptp.nodes import convert
 from cnc_ptp.nodes.events import EventPublisher
-from cnc_ptp.nodes.polling_node import PollingNode
+from cnc_ptp.nodes.polling_node import PollingNode, chain
 from cnc_ptp.nodes.topics import BLOCK_CLASSES, BLOCK_TYPES, DRIVE_STOPS, EVENTS, NEWEST_BLOCK, block_topic
 from cnc_ptp.nodes.watchdog import Watchdog
 from cnc_ptp.parameters import MachineParameters
@@ -36,6 +36,8 @@ from cnc_ptp.wire.stamps import Stamps
 
 FAREWELL = 0.3
 """Seconds between the last tick, or the last stop of a drive, and the end of the clock: what it has said arrives."""
+LAST_PATIENCE = 1.0
+"""Seconds of silence, at the end of a run, after which no more setpoints come, however long the watchdog time is."""
 DRIVE_BRAKED = 26265
 DRIVE_STOOD = 26266
 
@@ -49,26 +51,24 @@ class LastValues(NamedTuple):
     profile: Profile
     """Its stop from there."""
     deceleration: float
-    commanded: bool
-    """The last setpoint is one of a motion."""
 
 
 class DriveWatch:
-    """Holds the newest block of each axis and spindle as bytes, and lets the drive of a silent unit brake.
+    """Holds the newest block of each axis and spindle, and lets the drive of a silent unit brake.
 
-    Nobody is woken by these blocks, and none is decoded while its unit lives. In machine time a stop begins with the
-    cycle after the last setpoint, as everything else that depends on the unit: units wait for its blocks, so that all
-    of them come to that cycle when the watchdog time has passed.
+    No executor is woken by these blocks; some times in each watchdog time the newest ones are read. In machine time a
+    stop begins with the cycle after the last setpoint, as everything else that depends on the unit: units wait for its
+    blocks, so that all of them come to that cycle when the watchdog time has passed.
     """
 
     def __init__(self, node: PollingNode, machine: MachineParameters) -> None:
         self._node = node
         self._machine = machine
         axes = [name for name, axis in machine.axes.items() if not axis.virtual]
-        self._classes: dict[str, type] = dict.fromkeys(axes, AxisBlock) | dict.fromkeys(machine.spindles, SpindleBlock)
-        self._units = [*self._classes]
+        kinds = dict.fromkeys(axes, "axis") | dict.fromkeys(machine.spindles, "spindle")
+        self._units = [*kinds]
         """Those whose drives have not stopped on their own."""
-        self._newest: dict[str, bytes] = {}
+        self._newest: dict[str, AxisBlock | SpindleBlock] = {}
         self._seconds = machine.watchdog_ms / 1000.0
         self._watchdog = Watchdog(self._units, seconds=self._seconds)
         self._cycle_time = machine.cycle_time_us * 1e-6
@@ -76,9 +76,9 @@ class DriveWatch:
         self._publisher = node.create_publisher(msg.DriveStop, DRIVE_STOPS, EVENTS)
         self._events = EventPublisher(node)
         node.input_period = float("inf")  # this class says when
-        for unit, block_class in self._classes.items():
-            kind = next(kind for kind, each in BLOCK_CLASSES.items() if each is block_class)
-            node.poll_input(BLOCK_TYPES[kind], block_topic(unit), partial(self._take, unit), NEWEST_BLOCK)
+        for unit, kind in kinds.items():
+            take = chain(codec_of(BLOCK_CLASSES[kind]).decode, partial(self._take, unit))
+            node.poll_input(BLOCK_TYPES[kind], block_topic(unit), take, NEWEST_BLOCK)
 
     def heard(self, unit: str) -> None:
         """A unit that waits for others says that it lives."""
@@ -107,16 +107,16 @@ class DriveWatch:
         Then nobody says that it lives, so that a drive that stands is left alone.
         """
         self._node.take_inputs()
-        last = {unit: self._last_values(unit) for unit in self._units}
-        moved = [unit for unit, values in last.items() if values is not None and values.commanded]
-        for unit in self._watchdog.silent(moved, begun=True):
+        moved = [unit for unit in self._units if unit in self._newest and is_commanded(self._newest[unit])]
+        for unit in self._watchdog.silent(moved, begun=True, most=LAST_PATIENCE):
             self._stop(unit, stamps)
             moved.remove(unit)
         return not moved and time.monotonic() - self._stopped_at > FAREWELL
 
-    def _take(self, unit: str, data: bytes) -> None:
-        self._newest[unit] = data
+    def _take(self, unit: str, block: AxisBlock | SpindleBlock) -> None:
         self._watchdog.heard(unit)
+        if block.count:
+            self._newest[unit] = block
 
     def _stop(self, unit: str, stamps: Stamps) -> None:
         last = self._last_values(unit)
@@ -152,7 +152,7 @@ class DriveWatch:
     def _last_values(self, unit: str) -> LastValues | None:
         if unit not in self._newest:
             return None
-        block = self._decoded(unit)
+        block = self._newest[unit]
         return self._of_axis(unit, block) if isinstance(block, AxisBlock) else self._of_spindle(unit, block)
 
     def _of_axis(self, unit: str, block: AxisBlock) -> LastValues:
@@ -162,27 +162,29 @@ class DriveWatch:
         braking = braking_deceleration(axis, in_step=self._is_coupled(unit))
         profile = axis_stop(axis, position, velocity, acceleration, braking)
         cycle = block.first_cycle + block.count - 1
-        return LastValues(cycle, position, velocity, profile, braking, block.set_velocity[-1] != 0.0)
+        return LastValues(cycle, position, velocity, profile, braking)
 
     def _of_spindle(self, unit: str, block: SpindleBlock) -> LastValues:
-        gear = self._machine.spindles[unit].gears[block.gear[-1]]
+        gears = self._machine.spindles[unit].gears
+        gear = gears.get(block.gear[-1]) or next(iter(gears.values()))
         position, velocity = block.actual_position_deg[-1], block.actual_speed_rpm[-1] * DEG_S_PER_RPM
         braking = braking_deceleration(gear, in_step=self._is_coupled(unit))
         profile = spindle_stop(position, velocity, braking)
         cycle = block.first_cycle + block.count - 1
-        return LastValues(cycle, position, velocity, profile, braking, block.set_speed_rpm[-1] != 0.0)
+        return LastValues(cycle, position, velocity, profile, braking)
 
     def _is_coupled(self, unit: str) -> bool:
         """It has a master or slaves; they stop on their own ramps, and so does its drive: they stay together."""
-        masters = {name: self._decoded(name).master for name in self._newest}
+        masters = {name: block.master for name, block in self._newest.items()}
         return bool(masters.get(unit)) or unit in masters.values()
-
-    def _decoded(self, unit: str) -> AxisBlock | SpindleBlock:
-        block: AxisBlock | SpindleBlock = codec_of(self._classes[unit]).decode(self._newest[unit])
-        return block
 
     def _name(self, unit: str) -> str:
         return f"axis {unit}" if unit in self._machine.axes else f"spindle {unit}"
 
     def _length_unit(self, unit: str) -> str:
         return "mm" if unit in self._machine.axes and not self._machine.axes[unit].rotary else "deg"
+
+
+def is_commanded(block: AxisBlock | SpindleBlock) -> bool:
+    """The last setpoint is one of a motion."""
+    return bool(block.set_velocity[-1] if isinstance(block, AxisBlock) else block.set_speed_rpm[-1])

@@ -116,7 +116,7 @@ def call(function: str, *arguments: int | bytes | None) -> None:
 def join(namespace: str) -> None:
     """Puts this process into the namespaces of the isolated run, in the folder in which it is.
 
-    Raises CncError 26216 when there is none, 26217 for that of another user.
+    Raises CncError 26216 when there is none, 26217 for that of another user, 26214 where the system does not let it.
     """
     process = run_of(namespace)
     folder = os.getcwd()
@@ -125,8 +125,15 @@ def join(namespace: str) -> None:
     except OSError:  # it has ended meanwhile
         raise no_run(namespace) from None
     for door in doors:
-        call("setns", door, 0)
-        os.close(door)
+        try:
+            call("setns", door, 0)
+        except OSError as error:
+            reason = f"enter: the system does not permit to enter the isolated run ({error.strerror})"
+            raise CncError(
+                NOT_PERMITTED, reason, f"{NOTHING}. Permit it: kernel.yama.ptrace_scope, or as root"
+            ) from None
+        finally:
+            os.close(door)
     os.chdir(folder)
 
 

@@ -76,7 +76,7 @@ class ChannelNode(UnitNode):
         start = Command(self.unit.name, "start", given_arguments(known, goal))
         return [Command(self.unit.name, "load", {"program": goal.program}), start] if goal.program else [start]
 
-    def command(self, command: Command, source: str = OF_SERVICES) -> CommandRecord:
+    def command(self, command: Command, source: str | None = OF_SERVICES) -> CommandRecord:
         """As UnitNode; a program is read here, so that the unit and each replay get its text."""
         try:
             command = with_program(command, self._machine, self._loaded)

@@ -34,7 +34,7 @@ from cnc_ptp.nodes.bridge.value_topics import ValueTopics
 from cnc_ptp.nodes.topics import LIFE_SIGN, PLC_INPUT, PLC_TOPICS, VALUE_TOPICS, plc_quality, plc_topic
 from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters, read_machine
-from cnc_ptp.parameters.view.authority import OF_SERVICES, OF_TOPICS
+from cnc_ptp.parameters.view.authority import OF_PLC, OF_SERVICES, OF_TOPICS
 from cnc_ptp.plc.hli.hli import Hli
 from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.plc.program.plc_program import PlcFile
@@ -166,8 +166,11 @@ class PlcBridgeNode(UnitNode):
         self.plc.setpoints.arrive(axis, row)
 
     def _on_jog(self, axis: str, message: msg.Jog) -> None:
+        moves = message.valid and message.velocity != 0.0
+        if moves and not self._admits(Command(axis, JOG, {"velocity": message.velocity})):
+            return
         velocity = self._jogs.heard(axis, message, time.monotonic(), paced=self.paced)
-        if velocity is not None and self._admits(Command(axis, JOG, {"velocity": velocity})):
+        if velocity is not None:
             self.input(Command(axis, JOG, {"velocity": velocity}))
 
     def _watch_jogs(self) -> None:
@@ -184,10 +187,11 @@ class PlcBridgeNode(UnitNode):
             self._warn(error.number, error.message)
         return error is None
 
-    def command(self, command: Command, source: str = OF_SERVICES) -> CommandRecord:
+    def command(self, command: Command, source: str | None = OF_SERVICES) -> CommandRecord:
         """As UnitNode; a trajectory takes the authority over all of its axes."""
         try:
-            require_axes_open(command, self._machine.closed, source)
+            if source is not None:
+                require_axes_open(command, self._machine.closed, source)
         except CncError as error:
             return self.refuse(command, error)
         return super().command(command, source)
@@ -225,7 +229,7 @@ class PlcBridgeNode(UnitNode):
 
     def stop_all(self) -> None:
         """Controlled stop of everything; the run ends when all is at a standstill, with or without a duration."""
-        self.command(Command(PLC, "stop_all", {}))
+        self.command(Command(PLC, "stop_all", {}), None)
 
     def _on_life_sign(self, message: msg.LifeSign) -> None:
         if message.counter != self._life_sign_counter:
@@ -235,11 +239,13 @@ class PlcBridgeNode(UnitNode):
     def _watch_life_sign(self) -> None:
         """The external PLC: its silence sets feed hold, which only its next command ends, or a person's.
 
-        What a channel, a master or external setpoints move stops with them.
+        What a channel, a master or external setpoints move stops with them. A unit that is closed to the PLC is left
+        alone: the PLC could not release it.
         """
         if not self._life_signs.fallen_silent(time.monotonic()):
             return
-        held = [unit for unit in self._hli.objects if not self.plc.is_led(unit)]
+        closed = self._machine.closed
+        held = [unit for unit in self._hli.objects if not self.plc.is_led(unit) and OF_PLC not in closed.get(unit, ())]
         for unit in held:
             self._hli.objects[unit].hold_feed()
             self._values.hold_feed(unit)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable
+from math import inf
 
 from cnc_ptp.nodes.process import START_PATIENCE
 
@@ -38,8 +39,8 @@ class Watchdog:
         suspended, self._looked = now - self._looked > self.seconds / 2.0, now
         return suspended
 
-    def silent(self, names: Iterable[str], *, begun: bool) -> list[str]:
-        """Those of the watched `names` that are silent; until the run has `begun` they have longer."""
-        patience = self.seconds if begun else max(self.seconds, START_PATIENCE)
+    def silent(self, names: Iterable[str], *, begun: bool, most: float = inf) -> list[str]:
+        """Those of the watched `names` that are silent; until the run has `begun` they have longer. `most`: seconds."""
+        patience = min(most, self.seconds if begun else max(self.seconds, START_PATIENCE))
         now = time.monotonic()
         return [name for name in names if now - self._heard[name] > patience]

@@ -19,6 +19,8 @@ STOPS: Final[dict[str, frozenset[str]]] = {
     "plc": frozenset(),
 }
 """Kind of unit -> commands that bring something to rest, whatever their arguments."""
+STOP_BLOCKS: Final = frozenset({"MC_Stop", "MC_Halt"})
+"""The function blocks that do so."""
 HOLDS: Final = frozenset({"feed_hold", "emergency_stop"})
 """Commands, and control units of the PLC, that hold something while they are on."""
 ANSWERS: Final = frozenset({"acknowledge", "gear_changed"})

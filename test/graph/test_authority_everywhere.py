@@ -1,7 +1,10 @@
 """Refusals of a closed unit: offline, composed and in the graph the same, to the bit."""
 
 from authority_support import END, closed_file
+from client_support import beside_composed_run
 from graph_support import run, states_equal, verified
+
+from cnc_ptp import msg
 
 
 def test_offline_composed_and_graph_are_equal(tmp_path):
@@ -21,3 +24,13 @@ def test_offline_composed_and_graph_are_equal(tmp_path):
         refused = [record for record in verified(recording).commands if not record.accepted]
         found = [(each.cycle, each.target, each.command, each.error_id, each.message) for each in refused]
         assert found == wanted
+
+
+def test_a_lost_plc_holds_nothing_that_it_could_not_release(tmp_path):
+    with beside_composed_run(closed_file(tmp_path, "plc")) as client:
+        client.write("/plc/life_sign", msg.LifeSign, counter=1)
+        client.spin_until(lambda: any(event.error_id == 26103 for event in client.events), "the event")
+        (text,) = (event.text for event in client.events if event.error_id == 26103)
+        assert text.endswith("; feed hold is set on y")
+        client.wait_blocks("x")
+        assert not client.commands("x", "feed_hold")

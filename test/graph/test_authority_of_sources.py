@@ -101,5 +101,7 @@ def test_topics(client):
         assert told(command) == [26218]
     client.shows("x", "set_position", 0.0)
     client.shows("x", "override_percent", 100.0)
+    client.wait_blocks("x", 40)  # longer than a jog may be silent
+    assert [event.text for event in client.events if event.error_id == 26134] == [], "it has begun no jog"
     client.write("/y/jog", msg.Jog, sequence=1, valid=True, velocity=5.0)
     client.wait_last("y", lambda block: block.set_position[-1] > 5.0, "a jog of an open axis")

@@ -3,6 +3,7 @@
 import os
 import signal
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from graph_support import MILL, PTP, Running, kill, one_axis_machine, verified, 
 from spin_support import spin_until
 
 from cnc_ptp import msg
-from cnc_ptp.nodes import process
+from cnc_ptp.nodes import drive_watch, process
 from cnc_ptp.nodes.axis import AxisNode
 from cnc_ptp.nodes.clock import ClockNode
 from cnc_ptp.nodes.drive_watch import DriveWatch
@@ -166,6 +167,25 @@ def test_a_unit_that_says_that_it_lives_is_left_alone(bus):
     assert [stop.unit for stop in bus.stops] == ["y"]
 
 
+@pytest.mark.parametrize("bus", [(PTP, "x")], indirect=True)
+def test_a_block_that_cannot_be_read_does_not_end_the_watch(bus):
+    """The drive brakes from the last one that could be read; an empty block says nothing about it."""
+    bus.axis("x", 0, 1.0, 50.0)
+    bus.spin_until(lambda: bus.watch.look(STAMPS, begun=True) or "x" in bus.watch._newest)
+    for data in (b"", b"\x00\x01\x00\x00", encode_block(AxisBlock(10, 0, *[[]] * 18), STAMPS)):
+        bus.writers["x"].publish(data)
+    assert bus.stop_of("x").first_cycle == 10
+
+
+@pytest.mark.parametrize("bus", [(PTP, "x")], indirect=True)
+def test_at_the_end_a_long_watchdog_time_is_not_waited_for(bus, monkeypatch):
+    monkeypatch.setattr(bus.watch._watchdog, "seconds", 3600.0)
+    monkeypatch.setattr(drive_watch, "LAST_PATIENCE", 0.1)
+    bus.axis("x", 0, 1.0, 50.0)
+    bus.spin_until(lambda: bus.watch.settled(STAMPS) and bus.stops and bus.events)
+    assert [(stop.unit, stop.first_cycle) for stop in bus.stops] == [("x", 10)]
+
+
 @pytest.mark.parametrize("bus", [(PTP, "x", "y")], indirect=True)
 def test_at_the_end_only_what_moves_is_waited_for(bus):
     bus.axis("x", 0, 0.0, 0.0)
@@ -174,7 +194,19 @@ def test_at_the_end_only_what_moves_is_waited_for(bus):
     assert [stop.unit for stop in bus.stops] == ["y"]
 
 
-def test_an_axis_whose_drive_has_stopped_computes_nothing_and_ends():
+@pytest.mark.parametrize("milliseconds", [1, 50, 200])
+def test_drives_are_looked_at_in_time_with_any_watchdog_time(milliseconds):
+    """A clock that looks more seldom than half of the watchdog time takes itself for suspended each time."""
+    process.initialise()
+    try:
+        clock = ClockNode(replace(read_machine(str(PTP)), watchdog_ms=milliseconds))
+        assert clock._turn <= 0.25e-3 * milliseconds
+        clock.destroy_node()
+    finally:
+        rclpy.try_shutdown()
+
+
+def test_an_axis_whose_drive_has_stopped_ends():
     process.initialise()
     outside = rclpy.create_node("outside", enable_rosout=False, start_parameter_services=False)
     axis = AxisNode(read_machine(str(PTP)), "x")
@@ -284,7 +316,7 @@ def test_one_process_has_no_watch():
     try:
         clock = ClockNode(read_machine(str(PTP)), handover=Handover())
         assert f"/{DRIVE_STOPS}" not in [publisher.topic_name for publisher in clock.publishers]
-        assert clock.settled
+        assert clock.end_settled()
         clock.destroy_node()
     finally:
         rclpy.try_shutdown()

@@ -1,6 +1,7 @@
 """`run --isolated`: no process of this computer joins the graph; pages and `enter` are the only doors."""
 
 import asyncio
+import errno
 import os
 import shutil
 import signal
@@ -16,6 +17,8 @@ from graph_support import Running, command, one_axis_machine, run
 from network_support import LOOK, NOBODY, foreign, wide_open
 from web_support import Page
 
+from cnc_ptp.errors import CncError
+from cnc_ptp.nodes import isolation
 from cnc_ptp.nodes.isolation import claim_name
 from cnc_ptp.recording.reader import read_recording
 
@@ -118,6 +121,21 @@ def test_nothing_to_enter(ros_domain):
     assert run("enter", "true", expect=2).stderr == (
         f"P-ERR-26216 enter: no isolated run is under way on ROS domain {ros_domain} of this computer; nothing was "
         "started. Start it with cnc_ptp run --isolated\n"
+    )
+
+
+def test_a_system_that_does_not_let_enter(monkeypatch):
+    def refuses(*_arguments):
+        raise OSError(errno.EPERM, os.strerror(errno.EPERM))
+
+    monkeypatch.setattr(isolation, "run_of", lambda _namespace: os.getpid())
+    monkeypatch.setattr(isolation, "is_other", lambda _process, kind: kind == "net")
+    monkeypatch.setattr(isolation, "call", refuses)
+    with pytest.raises(CncError) as refused:
+        isolation.join("")
+    assert str(refused.value) == (
+        "P-ERR-26214 enter: the system does not permit to enter the isolated run (Operation not permitted); nothing was "
+        "started. Permit it: kernel.yama.ptrace_scope, or as root"
     )
 
 

@@ -52,6 +52,8 @@ def test_killed_node(running, node):
     assert recorded.last_cycle > 500
     check_every_reader_opens(recording)
     check_ramps(recorded, skip=node, ended=node != "recorder")
+    assert {stop.unit for stop in recorded.drive_stops} <= {node}, "no drive of a living unit brakes on its own"
+    assert "P-ERR-26267" not in output
     lost = {event.source for event in recorded.events if event.error_id == 26101}
     if node != "recorder":
         assert lost >= {"x": {"plc", "channel"}, "channel": {"x", "y", "plc"}}.get(node, {"plc"} - {node})

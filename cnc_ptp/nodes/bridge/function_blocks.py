@@ -20,13 +20,12 @@ from cnc_ptp.parameters.view.authority import OF_SERVICES
 from cnc_ptp.plc.called_blocks import BlockCall, CalledBlocks
 from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.plc.plcopen.catalogue import BLOCK_TYPES, UNCHANGED
+from cnc_ptp.protocol.authority import STOP_BLOCKS
 from cnc_ptp.protocol.blocks import AxisBlock, Command, CycleBlock, SpindleBlock
 from cnc_ptp.protocol.commands import BAD_ARGUMENT
 
 NAME = "function_block"
 POINTS = ("master_points", "slave_points")
-STOPS = frozenset({"MC_Stop", "MC_Halt"})
-"""Everybody may stop a unit."""
 REACHED = ("in_velocity", "in_gear", "in_sync")
 BLANK = action.FunctionBlock.Goal()
 INPUTS = [name for name in BLANK.get_fields_and_field_types() if name not in (NAME, *POINTS)]
@@ -77,7 +76,7 @@ class FunctionBlockActions:
         try:
             if self._node.is_over:
                 raise CncError(RUN_OVER, "the run has ended", UNCHANGED, where=where)
-            closed = None if name in STOPS else self._node.why_closed(Command(unit, name), OF_SERVICES)
+            closed = None if name in STOP_BLOCKS else self._node.why_closed(Command(unit, name), OF_SERVICES)
             if closed is not None:
                 raise closed
             call = self._blocks.start(unit, name, given_inputs(goal.request, where))

@@ -358,12 +358,12 @@ class UnitNode(PollingNode):
         """No more block is computed."""
         return self._gate.closed
 
-    def command(self, command: Command, source: str = OF_SERVICES) -> CommandRecord:
-        """Carries out a command between two blocks: from a service, an action or the watchdog."""
+    def command(self, command: Command, source: str | None = OF_SERVICES) -> CommandRecord:
+        """Carries out a command between two blocks: from a service or an action; None: of the machine itself."""
         if self._gate.closed:
             return self.refuse(command, CncError(RUN_OVER, "the run has ended"))
         with self._working():
-            record = self._runner.asked(command, source)
+            record = self._runner.command(command) if source is None else self._runner.asked(command, source)
         self._publish_records()
         return record
 
@@ -505,7 +505,7 @@ class UnitNode(PollingNode):
         self._gate.drop(source)
         if self._handover is None and not self._looking:
             self._looking = self.create_timer(LOOK_PERIOD, self.look)  # what has woken this node may be what is lost
-        self.command(Command(self.unit.name, "upstream_lost", {"source": source}))
+        self.command(Command(self.unit.name, "upstream_lost", {"source": source}), None)
         if source == CLOCK:
             self._alone = True
             for other in self._gate.sources:
