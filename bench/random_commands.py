@@ -60,13 +60,13 @@ POWERED = 0.9
 LEFT_OUT = INTERNAL | {"write_drive_parameter", "read_drive_parameter", "write_parameter", "serve", "set_life_sign"}
 """Commands of other units, and those that change what the checker takes from the machine file."""
 BAD = (math.nan, math.inf, -math.inf, 1e300, -1e300, 0.0, -0.0, "1", None, True, [], {})
+PLACES = ("target", "position", "activation_position", "master_position", "slave_position")
 NUMBERS: Mapping[str, tuple[float, float]] = {
-    "target": (-150.0, 150.0),
+    **dict.fromkeys(PLACES, (-150.0, 150.0)),
+    **dict.fromkeys(("acceleration", "deceleration"), (50.0, 4000.0)),
+    **dict.fromkeys(("factor_num", "factor_den"), (1.0, 3.0)),
     "distance": (-80.0, 80.0),
-    "position": (-150.0, 150.0),
     "velocity": (1.0, 400.0),
-    "acceleration": (50.0, 4000.0),
-    "deceleration": (50.0, 4000.0),
     "jerk": (1000.0, 90_000.0),
     "percent": (0.0, 120.0),
     "velocity_difference": (1.0, 50.0),
@@ -79,11 +79,6 @@ NUMBERS: Mapping[str, tuple[float, float]] = {
     "difference": (-10.0, 10.0),
     "process_velocity": (1.0, 200.0),
     "velocity_increase": (1.0, 100.0),
-    "activation_position": (-150.0, 150.0),
-    "master_position": (-150.0, 150.0),
-    "slave_position": (-150.0, 150.0),
-    "factor_num": (1.0, 3.0),
-    "factor_den": (1.0, 3.0),
     "max_speed_rpm": (100.0, 5000.0),
     "min_speed_rpm": (0.0, 50.0),
     "max_acceleration": (1000.0, 30_000.0),
@@ -332,13 +327,6 @@ class Record:
         unit.events.extend(told)
 
 
-def difference(name: str, first: Any, second: Any) -> str:
-    parted = [
-        each.name for each in fields(first) if repr(getattr(first, each.name)) != repr(getattr(second, each.name))
-    ]
-    return f"replay differs: {name} from cycle {first.first_cycle} in {', '.join(parted)}"
-
-
 def inputs_of(
     machine: MachineParameters, blocks: Mapping[str, list[Any]], records: list[CommandRecord]
 ) -> MotionInputs:
@@ -373,9 +361,7 @@ def lives(steps: int, seed: int) -> Iterator[CommandedMachine]:
 
 def main(arguments: list[str]) -> int:
     """Status 1 with a violation."""
-    steps, seed = (
-        (int(word) for word in (*arguments, "3000", "1")[:2]) if len(arguments) != 1 else (int(arguments[0]), 1)
-    )
+    steps, seed = (int(word) for word in (*arguments, *("3000", "1")[len(arguments) :]))
     begin, total, found = time.monotonic(), Counter[str](), 0
     for machine in lives(steps, seed):
         total += machine.counts

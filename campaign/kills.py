@@ -130,6 +130,8 @@ def await_end(graph: Graph, fault: Fault) -> str:
     if fault.signal == HOLD and not graph.wait(SURVIVED_AFTER):
         graph.interrupt()
         return "survived" if graph.wait(END_PATIENCE) else "does not end"
+    if fault.signal == HOLD and graph.process.returncode == 0:
+        return "over"
     return "stopped" if graph.wait(END_PATIENCE) else "does not end"
 
 
@@ -140,7 +142,7 @@ def left_behind(graph: Graph, fault: Fault, outcome: str) -> Iterator[str]:
         return
     status = graph.process.returncode
     expected = {SUPERVISOR: -signal.SIGKILL} if fault.signal == KILL else {}
-    if status != expected.get(fault.node, 1):
+    if status != expected.get(fault.node, 1) and outcome != "over":
         yield f"exit status {status}"
     if orphans := graph.orphans():
         yield f"orphans: {', '.join(orphans)}"

@@ -12,7 +12,7 @@ from campaign.kills import HOLD, KILL, TERM, Row
 def table(rows: Sequence[Row]) -> Table:
     """By what moved and what happened: how often, and how often all was as it must be."""
     shown = Table(title="faults: good / all")
-    for heading in ("what moves", KILL, TERM, HOLD, "drives that braked on their own", "longest until rest, s"):
+    for heading in ("what moves", KILL, TERM, HOLD, "drives that braked on their own", "longest until the end, s"):
         shown.add_column(heading)
     for case in dict.fromkeys(row.fault.case for row in rows):
         of_case = [row for row in rows if row.fault.case == case and row.outcome != "over"]

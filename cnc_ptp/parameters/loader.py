@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from cnc_ptp.parameters import errors
-from cnc_ptp.parameters.check.machine_checks import check_machine, unknown_closed_units
+from cnc_ptp.parameters.check.machine_checks import check_machine
 from cnc_ptp.parameters.check.machine_notices import machine_notices, notices_without_view
 from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.declare.declarations import ParameterValue
@@ -81,7 +81,7 @@ def load_machine(
     for node, parameters in sets.items():
         if parameters.kind == "channel":
             sets[node] = with_tables(parameters, sets, files, problems)
-    problems += [*check_machine(sets), *unknown_closed_units(machine, sets)]
+    problems += check_machine(machine, sets)
     if problems:
         raise ParameterError(problems)
     return machine_view(machine, sets, tuple(machine_notices(machine, sets)), Path(file).parent)
@@ -112,7 +112,7 @@ def examine_machine(text: str, file: str) -> tuple[list[Problem], list[Notice]]:
     for node, parameters in sets.items():
         if parameters.kind == "channel":
             sets[node] = with_tables(parameters, sets, files, problems)
-    problems += [*check_machine(sets), *unknown_closed_units(machine, sets)]
+    problems += check_machine(machine, sets)
     sound = sets if not problems else {node: axis for node, axis in sets.items() if is_sound(axis, sets, problems)}
     notices = list(machine_notices(machine, sound))
     for parameters in (sets[node] for node in sets if node not in sound):

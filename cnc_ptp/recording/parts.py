@@ -65,7 +65,8 @@ def files_in(folder: Path) -> list[Path]:
 def replace_parts(new: Path, folder: Path) -> None:
     """Moves a folder of parts to the name `folder`: there its files take the place of parts that are there already.
 
-    The former ones are put beside the new ones first. After an error, or an interruption, they are where they were.
+    The former ones are put beside the new ones first. After an error or Ctrl-C they are where they were;
+    of a process that is killed meanwhile they lie in a folder `.part.*` beside it.
     """
     if not folder.exists():
         new.rename(folder)

@@ -91,9 +91,13 @@ def _recover_parts(source: Path, output: Path) -> Recovered:
         with _beside(target, output) as new:
             if target.exists() and not target.is_dir():
                 raise FileExistsError(EEXIST, os.strerror(EEXIST))
-            whole = _write_parts(parts, new)
-            require_something(source, whole)
-            replace_parts(new, target)
+            try:
+                whole = _write_parts(parts, new)
+                require_something(source, whole)
+                replace_parts(new, target)
+            except OSError as error:
+                reason = f"recording {output}: cannot be written: {error.strerror}"
+                raise CncError(NOT_WRITTEN, reason, NOTHING_WRITTEN) from error
     except OSError as error:
         reason = f"recording {output}: no folder for its parts: {error.strerror}"
         raise CncError(NO_FOLDER, reason, NOTHING_WRITTEN) from error

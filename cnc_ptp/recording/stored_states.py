@@ -208,11 +208,12 @@ def read_columns(path: str | Path, topic: str, fields: Sequence[str]) -> Recorde
 
 
 class _SparseReader(Reader):
-    """Reads everything, for the same errors, and keeps no events, diagnostics and offsets."""
+    """Reads everything, for the same errors, and keeps no events, diagnostics, offsets and stops of drives."""
 
     def take(self, record: RawRecord) -> None:
         super().take(record)
-        for kept in (self.recorded.events, self.recorded.diagnostics, self.recorded.coordinates):
+        of = self.recorded
+        for kept in (of.events, of.diagnostics, of.coordinates, of.drive_stops):
             kept.clear()
 
 

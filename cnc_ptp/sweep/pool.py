@@ -19,7 +19,7 @@ from cnc_ptp.sweep.variant_run import Job, compute, failed
 PATIENCE = 10.0
 """s for a scheduler that does not answer, or has no worker."""
 RESTART = 120.0
-"""s within which a worker process of this computer that has died is there again."""
+"""s within which a worker process of this computer that has died is there again; Dask forgets it after 15 s."""
 GLANCE = 0.2
 """s between two looks at whether the sweep is to end."""
 IN_STOCK = 2
@@ -113,14 +113,19 @@ class Pool:
         no worker of this computer comes back.
         """
         try:
-            done = self._distributed.wait([*running], timeout=GLANCE, return_when="FIRST_COMPLETED").done
-        except (TimeoutError, self._distributed.TimeoutError):
-            done = set()
-        except CancelledError:
+            done = self._finished_of(running)
+            if self._cluster is not None and not done:
+                self._require_worker()
+        except (CancelledError, OSError):
             raise CncError(NO_SCHEDULER, "the scheduler is gone", KEPT) from None
-        if self._cluster is not None:
-            self._require_worker()
         return sorted(done, key=lambda future: str(future.key))
+
+    def _finished_of(self, running: Iterable[Any]) -> set[Any]:
+        try:
+            done: set[Any] = self._distributed.wait([*running], timeout=GLANCE, return_when="FIRST_COMPLETED").done
+        except (TimeoutError, self._distributed.TimeoutError):
+            return set()
+        return done
 
     def _require_worker(self) -> None:
         """Asks for the lost ones of this computer: Dask gives up one that dies while it starts.

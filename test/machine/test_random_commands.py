@@ -9,6 +9,7 @@ from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, rule
 
+from bench import random_commands
 from bench.random_commands import MACHINES, CommandedMachine, lives, main
 
 EXAMPLES = int(os.environ.get("RANDOM_COMMANDS", "6"))
@@ -64,9 +65,18 @@ def test_the_same_seed_makes_the_same_machine() -> None:
     assert repr(first.blocks) == repr(second.blocks)
 
 
-def test_a_violation_is_printed_with_its_seed(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_violation_is_printed_with_its_seed(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     machine = CommandedMachine(5)
     machine.require(False, "something")
-    assert machine.violations == ["seed 5 cycle 0: something"]
+    monkeypatch.setattr(random_commands, "lives", lambda _steps, _seed: iter([machine]))
+    assert main(["30"]) == 1
+    printed = capsys.readouterr().out.splitlines()
+    assert printed[0] == "seed 5 cycle 0: something"
+    assert printed[1].startswith("30 steps from seed 1 in ") and printed[1].endswith("machines with a violation: 1")
+
+
+def test_the_command_counts_its_steps(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["30", "4"]) == 0
     assert capsys.readouterr().out.startswith("30 steps from seed 4 in ")

@@ -348,7 +348,7 @@ def test_an_interruption_leaves_what_is_there(parts, tmp_path, monkeypatch, plac
             recover(parts, output)
     else:
         assert refusal(recover, parts, output) == (
-            f"P-ERR-26020 recording {output}: no folder for its parts: Input/output error; nothing was written"
+            f"P-ERR-26007 recording {output}: cannot be written: Input/output error; nothing was written"
         )
     assert contents(output) == before
     assert [each.name for each in tmp_path.iterdir()] == ["saved"]

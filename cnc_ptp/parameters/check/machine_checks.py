@@ -1,6 +1,6 @@
 """All checks of a machine: parameters against each other, channels against axes and spindles.
 
-Each check yields Problems. Only `check_machine` and `unknown_closed_units` are used by other modules.
+Each check yields Problems. Only `check_machine` is used by other modules.
 """
 
 from collections.abc import Callable, Iterator
@@ -28,7 +28,7 @@ from cnc_ptp.parameters.view.channel_members import Sets, axis_entries
 from cnc_ptp.parameters.view.machine_view import PLC
 
 
-def check_machine(sets: Sets) -> list[Problem]:
+def check_machine(machine: ParameterSet, sets: Sets) -> list[Problem]:
     """All cross-checks; `sets` has channels, axes and spindles by node name."""
     problems: list[Problem] = []
     for parameters in sets.values():
@@ -40,6 +40,7 @@ def check_machine(sets: Sets) -> list[Problem]:
             for channel_check in CHANNEL_CHECKS:
                 problems += channel_check(parameters, sets)
     problems += axes_in_two_channels(sets)
+    problems += unknown_closed_units(machine, sets)
     return problems
 
 
