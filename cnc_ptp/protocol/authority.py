@@ -64,4 +64,5 @@ def require_axes_open(command: Command, closed: Mapping[str, Collection[str]], s
     for axis in command.arguments.get("axes", ()):
         error = closed_to("axis", str(axis), command.command, {}, source=source, closed=closed.get(str(axis), ()))
         if error is not None:
-            raise CncError(NOT_AUTHORISED, f"axis {axis}: {error.reason}", error.effect)
+            where = f"plc {command.target}: {command.command} refused"
+            raise CncError(NOT_AUTHORISED, f"axis {axis}: {error.reason}", error.effect, where=where)

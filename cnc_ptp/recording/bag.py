@@ -60,9 +60,18 @@ def _topic(channel: Channel, type_name: str) -> dict[str, Any]:
         "name": channel.topic,
         "type": type_name,
         "serialization_format": channel.message_encoding,
-        QOS: yaml_text.load(channel.metadata.get(QOS, "")) or [],
+        QOS: _quality_of_service(channel),
         "type_description_hash": channel.metadata.get(TYPE_HASH, ""),
     }
+
+
+def _quality_of_service(channel: Channel) -> list[Any]:
+    """As the publishers offered it; none of a text that is no list."""
+    try:
+        offered = yaml_text.load(channel.metadata.get(QOS, ""))
+    except yaml.YAMLError:
+        return []
+    return offered if isinstance(offered, list) else []
 
 
 def metadata_text(information: dict[str, Any]) -> str:

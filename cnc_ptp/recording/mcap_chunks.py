@@ -136,6 +136,15 @@ class RecordReader:
                 "nothing was read, give a file that cnc_ptp or 'ros2 bag record --storage mcap' has written",
             )
 
+    def footer(self, record: RawRecord) -> Footer:
+        """The last record of a closed file."""
+        footer = self.parse(Footer.read, record)
+        if footer.summary_start > record.offset:
+            raise self.corrupt(
+                record.offset, f"the footer lies before the summary, which begins at {footer.summary_start}"
+            )
+        return footer
+
     def unreadable(self, error: OSError) -> CncError:
         return CncError(
             UNREADABLE, f"recording {self.path}: cannot be opened: {error.strerror}", "nothing was read, check the path"
@@ -223,9 +232,9 @@ class McapRecords(RecordReader):
     def _finish(self, file: BinaryIO, record: RawRecord, end: int) -> None:
         if not self._data_ended:
             raise self.corrupt(record.offset, "the footer comes without an end of the data section before it")
-        footer = self.parse(Footer.read, record)
+        footer = self.footer(record)
         begin = footer.summary_start or record.offset
-        summary = self._bytes(file, begin, max(0, record.offset + RECORD_PREFIX.size + 16 - begin))
+        summary = self._bytes(file, begin, record.offset + RECORD_PREFIX.size + 16 - begin)
         if footer.summary_crc not in (0, zlib.crc32(summary)):
             raise self.corrupt(record.offset, "the CRC of the summary does not match its content")
         rest = self._bytes(file, end, self._size - end)

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 from mcap.opcode import Opcode
-from mcap.records import Attachment, AttachmentIndex, Channel, Footer, Metadata, MetadataIndex, Schema, Statistics
+from mcap.records import Attachment, AttachmentIndex, Channel, Metadata, MetadataIndex, Schema, Statistics
 from mcap.writer import MCAP0_MAGIC
 
 from cnc_ptp.recording.mcap_chunks import MessageRun, RawRecord, RecordReader
@@ -148,11 +148,11 @@ class McapIndex(RecordReader):
         if len(end) < END_SIZE or not end.endswith(MCAP0_MAGIC) or end[0] != Opcode.FOOTER:
             return None
         record = RawRecord(self._size - END_SIZE, Opcode.FOOTER, memoryview(end)[RECORD_PREFIX.size :])
-        footer = self.parse(Footer.read, record)
+        footer = self.footer(record)
         start = int(footer.summary_start)
         if not start:
             return None
-        summary = self._bytes(start, max(0, self._size - start - len(MCAP0_MAGIC) - SUMMARY_CRC.size))
+        summary = self._bytes(start, self._size - start - len(MCAP0_MAGIC) - SUMMARY_CRC.size)
         if footer.summary_crc not in (0, zlib.crc32(summary)):
             raise self.corrupt(start, "the CRC of the summary does not match its content")
         return start

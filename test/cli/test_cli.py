@@ -42,7 +42,7 @@ def program(tmp_path):
 def test_help_everywhere(command):
     for option in ("--help", "-h"):
         result = call(*command, option)
-        assert result.exit_code == 0
+        assert result.exit_code == 0, result.output
         assert "Usage:" in result.output
 
 

@@ -7,6 +7,7 @@ import tracemalloc
 import pytest
 import yaml
 from mcap.reader import make_reader
+from mcap.records import Channel, Schema, Statistics
 from recording_support import Blocks, record, smooth_run
 from rosbags.highlevel import AnyReader
 from rosbags.interfaces import QosDurability, QosHistory, QosReliability
@@ -14,6 +15,7 @@ from rosbags.rosbag2 import Reader
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from cnc_ptp.errors import CncError
+from cnc_ptp.recording.bag import QOS, bag_information
 from cnc_ptp.recording.closing import close_cut
 from cnc_ptp.recording.mcap_chunks import McapRecords
 from cnc_ptp.recording.qos import Qos, parse_profiles, profiles_text
@@ -23,6 +25,17 @@ from cnc_ptp.recording.writer import Recording
 from cnc_ptp.wire.schemas import schema_text, type_hash
 
 REMEMBERED = {"/x/block", "/s/block", "/events", "/commands", "/channel/handshake", "/channel/offsets"}
+STATISTICS = Statistics(
+    attachment_count=0,
+    channel_count=1,
+    channel_message_counts={1: 3},
+    chunk_count=1,
+    message_count=3,
+    message_end_time=2,
+    message_start_time=1,
+    metadata_count=0,
+    schema_count=1,
+)
 
 
 @pytest.fixture
@@ -262,3 +275,18 @@ def test_recording_that_holds_no_chunk_yet(path, tmp_path):
     shutil.copy(cut, path)
     with path.open("rb") as stream:
         assert make_reader(stream).get_summary().statistics.message_count == 0
+
+
+@pytest.mark.parametrize("offered", ["'no end", "reliable", "", "{a: 1}"])
+def test_quality_of_service_that_is_no_list_is_left_out(offered):
+    """Of a recording of another program, or a damaged one, that is recovered."""
+    channel = Channel(id=1, topic="/x", message_encoding="cdr", metadata={QOS: offered}, schema_id=1)
+    schema = Schema(id=1, name="std_msgs/msg/String", encoding="ros2msg", data=b"")
+    [described] = bag_information("run.mcap", STATISTICS, [channel], [schema])["topics_with_message_count"]
+    assert described["topic_metadata"] == {
+        "name": "/x",
+        "type": "std_msgs/msg/String",
+        "serialization_format": "cdr",
+        QOS: [],
+        "type_description_hash": "",
+    }

@@ -11,6 +11,7 @@ from mcap.opcode import Opcode
 from mcap.writer import CompressionType, Writer
 from recording_support import MACHINE, Blocks, record
 
+import cnc_ptp.recording
 from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import CommandRecord, Event
 from cnc_ptp.recording.reader import Diagnostic, iter_messages, read_recording
@@ -249,6 +250,18 @@ def test_corrupt_attachment(path, scratch):
     place = place_of(data, 9)
     data[place + 60] ^= 1
     assert refusal(scratch, data) == f"offset {place}: the CRC of the attachment does not match its content"
+
+
+@pytest.mark.parametrize("start", [1 << 48, (1 << 64) - 1])
+def test_footer_before_the_summary(path, scratch, start):
+    data = bytearray(path.read_bytes())
+    place = place_of(data, 2)
+    data[place + 9 : place + 17] = start.to_bytes(8, "little")
+    found = f"offset {place}: the footer lies before the summary, which begins at {start}"
+    assert refusal(scratch, data) == found
+    with pytest.raises(CncError) as error:
+        cnc_ptp.recording.open(scratch)
+    assert found in str(error.value)
 
 
 def test_corrupt_message_index_shows_in_the_data_section(path, scratch):

@@ -41,6 +41,20 @@ def test_a_command_of_a_page(tmp_path, source, number):
     run(story, machine=closed(tmp_path, source))
 
 
+def test_a_trajectory_of_a_page(tmp_path):
+    """It is a command to the PLC, which is open; the axis is not."""
+
+    async def story(here):
+        page = await here.page()
+        points = [[1.0, 1.0]]
+        refused = await page.command("plc", "follow_trajectory", axes=["y", "x"], points=points)
+        rule = "the machine file closes it to pages (closed_to_pages, P-MACH-00084)"
+        text = f"plc plc: follow_trajectory refused: axis x: {rule}; nothing was changed"
+        assert (refused["number"], refused["text"]) == (26218, text)
+
+    run(story, machine=closed(tmp_path, "pages"))
+
+
 def test_a_jog_of_a_page(tmp_path):
     async def story(here):
         page = await here.page()

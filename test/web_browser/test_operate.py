@@ -209,6 +209,7 @@ def test_a_program_is_loaded_and_runs_with_its_active_line(look, fake):
 def test_start_at_a_line(look, fake):
     page = look(command=True)
     page.select_option("[aria-label='Load a program']", "bracket.nc")
+    page.wait_for_selector(".line >> text=N10")
     page.fill("[aria-label='Find in the program']", "120")
     page.press("[aria-label='Find in the program']", "Enter")
     page.click("text=Start at line 120")

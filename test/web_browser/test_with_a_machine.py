@@ -147,7 +147,7 @@ def test_an_axis_stops_when_its_page_dies(browser, mill, how):
     watching.result(2 * PATIENCE / 1000)
     held = samples[0][1]
     slower = next(at for at, velocity in samples if velocity < held - 1e-6)
-    assert held > 10 and slower > died
+    assert held > 10 and 0.0 < slower - died < 5.0, "0.2 s and what a busy computer adds"
     assert samples[-1][1] == 0.0
     speeds = [velocity for _, velocity in samples]
     assert speeds == sorted(speeds, reverse=True)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from cnc_ptp.errors import CncError, nearest_name
-from cnc_ptp.protocol.authority import STOPS
+from cnc_ptp.protocol.authority import HOLDS, STOPS
 from cnc_ptp.protocol.commands import COMMANDS, INTERNAL, OF_CHANNELS
 from cnc_ptp.web.numbers import NOT_FROM_PAGES, WRONG_ROLE
 from cnc_ptp.web.protocol import NOTHING
@@ -52,8 +52,7 @@ def refused_from_pages(kind: str, command: str) -> bool:
 
 def is_stop(kind: str, command: str, arguments: Mapping[str, Any]) -> bool:
     """It stops something, or holds it: permitted to every operator, also without the command."""
-    holds = command == "feed_hold" or (kind == "plc" and command == "emergency_stop")
-    return command in STOPS[kind] or (holds and arguments.get("enabled") is True)
+    return command in STOPS[kind] or (command in HOLDS and arguments.get("enabled") is True)
 
 
 def require_page_command(kind: str, unit: str, command: str, arguments: Mapping[str, Any]) -> None:

@@ -16,8 +16,8 @@ from cnc_ptp.client.offline_link import OfflineLink
 from cnc_ptp.errors import CncError
 from cnc_ptp.nodes.bridge.jog_topics import JogTopics
 from cnc_ptp.parameters.view.authority import OF_PAGES, closed_units
-from cnc_ptp.protocol.authority import closed_to
-from cnc_ptp.protocol.blocks import Event, Severity
+from cnc_ptp.protocol.authority import closed_to, require_axes_open
+from cnc_ptp.protocol.blocks import Command, Event, Severity
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.web.access.rights import is_stop
 from cnc_ptp.web.faces.description import describe_commands, describe_units
@@ -99,11 +99,12 @@ class MachineFace(Face):
         return reply
 
     def require_open(self, unit: str, command: str, arguments: Mapping[str, Any]) -> None:
-        """Raises CncError 26218 where the machine file closes the unit to pages."""
+        """Raises CncError 26218 where the machine file closes the unit, or an axis of a trajectory, to pages."""
         closed = self._closed.get(unit, ())
         error = closed_to(self.kinds[unit], unit, command, arguments, source=OF_PAGES, closed=closed)
         if error is not None:
             raise error
+        require_axes_open(Command(unit, command, dict(arguments)), self._closed, OF_PAGES)
 
     async def _in_turn(self, unit: str, command: str, arguments: Mapping[str, Any], user: str) -> Reply:
         """Commands of a unit one after the other. A stop waits for none; those that wait then are not sent."""

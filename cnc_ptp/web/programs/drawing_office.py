@@ -38,6 +38,8 @@ class Cancelled:
 
 def try_to_draw(drawing: Drawing, number: int) -> bytes | str:
     """As backplot.draw; of a program that is refused the text: its error does not travel between processes."""
+    if Cancelled.has(number):
+        return b""
     try:
         return draw(drawing, is_wanted=lambda: not Cancelled.has(number))
     except CncError as error:
@@ -77,8 +79,8 @@ class DrawingOffice:
                 self._cancel(drawing.channel)
             number = next(self._numbers)
             self._orders[key] = Order(number, drawing.channel, asyncio.create_task(self._draw(drawing, number)))
-            while len(self._orders) > KEPT:
-                del self._orders[next(iter(self._orders))]
+            for old in [each for each, order in self._orders.items() if order.task.done()][:-KEPT]:
+                del self._orders[old]
         order = self._orders[key]
         try:
             drawn = await asyncio.shield(order.task)
