@@ -10,6 +10,7 @@ import click
 
 from cnc_ptp.commands.console import print_error
 from cnc_ptp.errors import WRONG_INPUT, CncError
+from cnc_ptp.ros_arguments import RosArguments
 from cnc_ptp.ros_arguments import split as split_ros_arguments
 
 WITHOUT_NODES = {
@@ -30,12 +31,17 @@ WITHOUT_NODES = {
 """What commands that start no nodes do not do with a machine file that is wrong."""
 
 
+OF_ANOTHER = "enter"
+"""The command whose arguments are another command line: ROS arguments among them are for that one."""
+
+
 class Group(click.Group):
     """Prints a refusal as one text and ends with status 2; no traceback. ROS arguments are its context's object."""
 
     def main(self, args: Sequence[str] | None = None, *rest: Any, **options: Any) -> Any:
+        words = sys.argv[1:] if args is None else list(args)
         try:
-            own, ros = split_ros_arguments(sys.argv[1:] if args is None else args)
+            own, ros = (words, RosArguments()) if words[:1] == [OF_ANOTHER] else split_ros_arguments(words)
         except CncError as error:
             print_error(error)
             sys.exit(WRONG_INPUT)

@@ -212,13 +212,15 @@ def test_users_of_the_pages_are_read_before_anything_is_started(folder):
     assert done.stderr.startswith("P-ERR-26246 ")
 
 
-def test_a_command_that_cannot_be_run(folder):
+def test_commands_and_their_own_ros_arguments(folder):
     recording = folder / "entered.mcap"
     running = Running(folder / "one.yaml", "--isolated", "--composed", "--stay", "--record", recording)
     try:
         running.wait_until_recorded(recording, 1)
         done = run("enter", "no_such_command", expect=2)
         assert "Error: no_such_command cannot be run: No such file or directory.\n" in done.stderr
+        shows = run("enter", sys.executable, "-c", "import sys; print(sys.argv[1:])", "-v", "--ros-args", "--unknown")
+        assert shows.stdout == "['-v', '--ros-args', '--unknown']\n"
     finally:
         running.process.send_signal(signal.SIGINT)
         running.finish(0)
