@@ -7,7 +7,8 @@ import os
 import socket
 import sys
 from collections.abc import Callable, Iterable, MutableMapping, Sequence, Set
-from contextlib import suppress
+from contextlib import redirect_stdout, suppress
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -131,6 +132,14 @@ def is_read(node: Node, publisher: Publisher[Any], names: Set[str]) -> bool:
     return names <= readers and publisher.get_subscription_count() >= len(names)
 
 
+def take_nodes(executor: EventsExecutor, nodes: Sequence[Node]) -> None:
+    """Adds nodes. Each action has a timer, and rclpy prints that eight timers are many: that is not for the user."""
+    with redirect_stdout(StringIO()):
+        for node in nodes:
+            executor.add_node(node)
+        executor.spin_once(timeout_sec=0.0)  # it meets the timers there
+
+
 def spin(
     nodes: Sequence[Node],
     *,
@@ -145,8 +154,7 @@ def spin(
     """
     executor = EventsExecutor()
     try:
-        for node in nodes:
-            executor.add_node(node)
+        take_nodes(executor, nodes)
         while not done():
             executor.spin_once(timeout_sec=wait())
             after()
