@@ -183,7 +183,7 @@ def check_recording(row: Row, case: Case, recording: Path, written: int) -> None
     if row.cycles < written - FLUSHED - machine.watchdog_ms * 1000 // machine.cycle_time_us:
         row.problems.append(f"the recording ends at cycle {row.cycles}, the fault came at {written}")
     of_recorder = fault.node == "recorder" and fault.signal != HOLD
-    row.problems += motion.problems(recorded, machine, ended=not of_recorder)
+    row.problems += [*motion.problems(recorded, machine, ended=not of_recorder), *motion.violations(recording)]
     row.own_stops = {stop.unit: len(stop.actual_position) for stop in recorded.drive_stops}
     check_links(row, case, recorded)
     row.problems += not_retracted(recorded)

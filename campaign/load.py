@@ -81,7 +81,7 @@ def finished(row: LoadRow, graph: Graph, name: str) -> Recorded:
         row.problems.append(f"orphans: {orphans}")
     recorded = read_recording(graph.recording)
     machine = read_machine(str(case_of(name).machine))
-    row.problems += motion.problems(recorded, machine, ended=True)
+    row.problems += [*motion.problems(recorded, machine, ended=True), *motion.violations(graph.recording)]
     errors = {event.text for event in recorded.events if event.severity == Severity.ERROR and event.error_id != 26106}
     row.problems += sorted(errors)
     newest = {each.name: each.values for each in recorded.diagnostics}

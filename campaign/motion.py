@@ -6,13 +6,17 @@ The checks are their own: differences of recorded values, no formula of the kern
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from campaign.cases import Link
+from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import MachineParameters
+from cnc_ptp.recording.motion_check.check import check_recording
+from cnc_ptp.recording.motion_check.inputs import NO_SETPOINTS
 from cnc_ptp.recording.reader import Recorded
 
 Values = npt.NDArray[np.float64]
@@ -80,6 +84,16 @@ def problems(recorded: Recorded, machine: MachineParameters, *, ended: bool) -> 
         moved = np.abs(np.diff(track.actual_position)) / cycle
         if moved.max(initial=0.0) > velocity * OF_ACTUAL + ROUNDING:
             yield f"{unit}: its position jumps ({moved.max():.1f} per second at {int(moved.argmax())})"
+
+
+def violations(recording: Path) -> list[str]:
+    """What the checker of all recordings finds (cnc_ptp verify --motion); it knows more, but nothing of drives alone."""
+    try:
+        return [str(violation) for violation in check_recording(recording).violations]
+    except CncError as error:
+        if error.number != NO_SETPOINTS:
+            raise
+        return []
 
 
 def limits(machine: MachineParameters, unit: str) -> tuple[float, float]:
