@@ -87,7 +87,7 @@ def problems(recorded: Recorded, machine: MachineParameters, *, ended: bool) -> 
 
 
 def violations(recording: Path) -> list[str]:
-    """What the checker of all recordings finds (cnc_ptp verify --motion); it knows more, but nothing of drives alone."""
+    """What the checker of all recordings finds (cnc_ptp verify --motion); it knows nothing of drives alone."""
     try:
         return [str(violation) for violation in check_recording(recording).violations]
     except CncError as error:
