@@ -6,6 +6,7 @@ import pytest
 import rclpy
 from graph_support import MILL, PTP, run
 from rclpy.node import Node
+from recording_support import Blocks
 from spin_support import spin_until
 
 from cnc_ptp import msg
@@ -14,9 +15,10 @@ from cnc_ptp.nodes import process
 from cnc_ptp.nodes.clock import ClockNode
 from cnc_ptp.nodes.monitor import RunMonitor
 from cnc_ptp.nodes.recorder import RecorderNode
-from cnc_ptp.nodes.topics import BLOCKS, EVENT, EVENTS, REPORT, TICK, block_topic
+from cnc_ptp.nodes.topics import BLOCKS, DRIVE_STOPS, EVENT, EVENTS, REPORT, TICK, block_topic
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import PlcBlock, Severity
+from cnc_ptp.recording.reader import read_recording
 from cnc_ptp.recording.writing_place import require_writable
 from cnc_ptp.wire.block_codec import encode_block
 from cnc_ptp.wire.stamps import Stamps
@@ -109,6 +111,27 @@ def test_blocks_that_are_not_recorded_are_told(around, tmp_path):
             "recorder: blocks of 'plc' from cycle 10 to 29 are missing in the recording",
         )
     ]
+
+
+@pytest.mark.motion_unchecked("random numbers")
+def test_blocks_behind_the_stop_of_a_drive_are_not_recorded(around, tmp_path):
+    """A process that was suspended computes what it has missed; its drive has braked meanwhile."""
+    path = tmp_path / "a.mcap"
+    outside, recorder, spin_until = around(lambda: RecorderNode(read_machine(str(PTP)), str(path), PTP.read_text()))
+    blocks = Blocks(1)
+    axis = outside.create_publisher(msg.AxisBlock, block_topic("x"), BLOCKS)
+    stops = outside.create_publisher(msg.DriveStop, DRIVE_STOPS, EVENTS)
+    spin_until(lambda: outside.ticks.get_subscription_count() and axis.get_subscription_count())
+    spin_until(stops.get_subscription_count)
+    outside.ticks.publish(msg.CycleTick(first_cycle=0, count=10))
+    axis.publish(encode_block(blocks.axis(0), STAMPS))
+    spin_until(lambda: recorder._next_cycle["x"] == 10)
+    stops.publish(msg.DriveStop(unit="x", first_cycle=10))
+    spin_until(lambda: recorder._stopped == {"x": 10})
+    axis.publish(encode_block(blocks.axis(10), STAMPS))
+    spin_until(lambda: recorder._next_cycle["x"] == 20)
+    recorder.destroy_node()
+    assert read_recording(path).states["/x/state"]["cycle"].tolist() == list(range(10))
 
 
 def test_a_fault_in_the_last_block_fails_the_run(around):
