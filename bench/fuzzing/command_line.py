@@ -180,7 +180,8 @@ def carried_out(words: list[str]) -> Any:
     )
     if reader is None:
         return CliRunner().invoke(cli.main, words)
-    with reader.command.make_context(words[0], words[len(reader.words) :], obj=[]):
+    settings = cli.main.context_settings  # a command keeps the names of its help option that it was first read with
+    with reader.command.make_context(words[0], words[len(reader.words) :], obj=[], **settings):
         return None
 
 
