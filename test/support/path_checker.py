@@ -32,7 +32,7 @@ SHORTEST = 2e-3
 NEAR = 1e-2
 """mm; where no cycle before or behind a stop is nearer there is none."""
 RESOLUTION = 1e-14
-"""mm of path length; an axis that moves far on a short path has the more of it in its position."""
+"""mm of a path length below 64 mm; an axis that moves far on a short path has the more of it in its position."""
 WINDOW, POINTS = 32, 512
 """Segments and samples that are compared at once."""
 
@@ -168,6 +168,7 @@ class PathChecker:
 
     def limits(self, run: Run, found: Findings) -> None:
         """Velocity, acceleration and jerk of each axis."""
+        longest = float(np.linalg.norm(np.diff(run.position[:, self.path], axis=0), axis=1).sum())
         for n, axis in enumerate(self.axes):
             p, v, a, j = (each[:, n] for each in (run.position, run.velocity, run.acceleration, run.jerk))
             name, strongest = f"axis {n}", max(axis.acceleration, axis.deceleration)
@@ -177,19 +178,23 @@ class PathChecker:
             growing = a * v > 0.0
             found.above(f"{name} a", np.where(growing, np.abs(a), 0.0), axis.acceleration)
             found.above(f"{name} a-", np.where(growing, 0.0, np.abs(a)), strongest if self.steps else axis.deceleration)
-            found.above(f"{name} Δ²p/T²", np.abs(np.diff(p, 2)) / CYCLE**2, strongest, 1e-6 + self._unsure(n, 2))
+            found.above(
+                f"{name} Δ²p/T²", np.abs(np.diff(p, 2)) / CYCLE**2, strongest, 1e-6 + self._unsure(n, 2, longest)
+            )
             if not self.steps:
                 found.above(f"{name} j", np.abs(j), axis.jerk)
-                found.above(f"{name} Δ³p/T³", np.abs(np.diff(p, 3)) / CYCLE**3, axis.jerk, 1e-3 + self._unsure(n, 3))
+                found.above(
+                    f"{name} Δ³p/T³", np.abs(np.diff(p, 3)) / CYCLE**3, axis.jerk, 1e-3 + self._unsure(n, 3, longest)
+                )
                 mean = 0.5 * CYCLE * (v[1:] + v[:-1]) - CYCLE**2 * (a[1:] - a[:-1]) / 12.0
                 kink = 0.5 * axis.jerk * CYCLE**3
                 found.above(f"{name} states and positions", np.abs(np.diff(p) - mean), kink, 1e-9)
 
-    def _unsure(self, axis: int, order: int) -> float:
-        """Of a difference, by the resolution of the path length on the segment where the axis is fastest."""
+    def _unsure(self, axis: int, order: int, longest: float) -> float:
+        """Of a difference, by the resolution of a path length of `longest` mm on the segment where the axis is fastest."""
         ways = [(abs(s.end[axis] - s.start[axis]), np.linalg.norm((s.end - s.start)[self.path])) for s in self.segments]
         steepest = max((way / length for way, length in ways if length > EXACT), default=0.0)
-        return float(2.0**order * RESOLUTION * steepest / CYCLE**order)
+        return float(2.0**order * max(RESOLUTION, np.spacing(longest)) * steepest / CYCLE**order)
 
     # path
 
