@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from pathlib import Path
 
 from bench.figures import Effort, Figure, ShowProgress, stopwatch
+from bench.jobs import ROOT
 from cnc_ptp.control.control_loop import ControlColumns, ControlLoop
 from cnc_ptp.control.drives import CascadedDrive, Drive, FirstOrderDrive, make_drive
 from cnc_ptp.control.feedforward import CouplingLimits
@@ -19,7 +19,7 @@ from cnc_ptp.motion.setpoints import Setpoints
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.parameters.view.control_view import ADD_ACC, ADD_VEL, ControlParameters
 
-MACHINE = Path(__file__).parents[1] / "config" / "mill.yaml"
+MACHINE = ROOT / "config" / "mill.yaml"
 RADIUS, FEED = 25.0, 2000.0 / 60.0
 GOAL = 1.0
 """µs: controller, cascaded drive, friction compensation and feedforward."""

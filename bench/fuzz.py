@@ -32,14 +32,10 @@ def row(verdict: Verdict) -> str:
 @click.argument("kinds", nargs=-1, type=click.Choice([*KINDS]), metavar="[KIND]...")
 @click.option("--count", type=click.IntRange(1), default=1000, show_default=True, help="Inputs of each kind.")
 @click.option("--seed", type=int, default=1, show_default=True, help="Of all random numbers.")
-@click.option(
-    "--first", type=click.IntRange(0), default=0, help="Number of the first input: --first N --count 1 is one."
-)
+@click.option("--first", type=click.IntRange(0), default=0, help="Number of the first input, as a finding names it.")
 @click.option("--minutes", type=float, default=0.0, help="End each kind after so many minutes, whatever --count says.")
 def main(kinds: Sequence[str], count: int, seed: int, first: int, minutes: float) -> None:
     """Tries mutated inputs of each KIND, all without one. Status 1 where one was not taken as documented."""
-    faulthandler.enable()
-    sys.dont_write_bytecode = True
     print(HEAD, flush=True)
     failed = False
     for name in kinds or KINDS:
@@ -53,4 +49,6 @@ def main(kinds: Sequence[str], count: int, seed: int, first: int, minutes: float
 
 
 if __name__ == "__main__":
+    faulthandler.enable()
+    sys.dont_write_bytecode = True
     main()

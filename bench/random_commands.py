@@ -3,8 +3,7 @@
 A machine runs offline. Each step is a command with random arguments, good and bad ones, to an axis, a spindle, a
 channel or the PLC, or some blocks of time. What must hold:
 
-- a refusal that says that nothing was changed leaves the state of all units as it was, bit by bit,
-- states exclude each other, a path has one owner, every job ends once,
+- the invariants of each command and block (checked_machine.py),
 - the motion keeps to its limits and has no step, what is stopped stays stopped (recording/motion_check),
 - the run computed again from its recorded commands is equal to the bit.
 
@@ -19,23 +18,19 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
 from dataclasses import fields
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from bench.checked_machine import CheckedMachine
+from bench.jobs import ROOT
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.offline import OfflineMachine
-from cnc_ptp.machine.wiring import build_units, unit_kinds
 from cnc_ptp.parameters import MachineParameters, read_machine
-from cnc_ptp.plc.plc_unit import PlcUnit
-from cnc_ptp.protocol.axis_states import AxisStateCode as S
-from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, Command, CommandRecord, SpindleBlock
+from cnc_ptp.protocol.blocks import AxisBlock, Command, CommandRecord, SpindleBlock
 from cnc_ptp.protocol.commands import COMMANDS, INTERNAL, THROUGH_PLC, Argument
-from cnc_ptp.protocol.unit import A_CLIENT, PLC, Unit
+from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.recording.computed_again import commands_by_cycle, computed_again, fresh_machine
 from cnc_ptp.recording.motion_check.check import check_motion
 from cnc_ptp.recording.motion_check.inputs import (
@@ -46,15 +41,10 @@ from cnc_ptp.recording.motion_check.inputs import (
     in_order,
     orders_by_unit,
 )
-from cnc_ptp.spindle.spindle_unit import SpindleUnit
-from cnc_ptp.state.machine_state import StateStore
 
-ROOT = Path(__file__).parents[1]
 MACHINES = ("config/mill.yaml", "config/lathe.yaml", "config/ptp.yaml", "config/gantry.yaml")
 LIFE = 300
 """Steps of a machine."""
-UNCHANGED = ("nothing was changed", "nothing was executed")
-"""What a refusal says that leaves everything as it was."""
 POWERED = 0.9
 """Share of axes and spindles that have power from the start."""
 LEFT_OUT = INTERNAL | {"write_drive_parameter", "read_drive_parameter", "write_parameter", "serve", "set_life_sign"}
@@ -97,20 +87,15 @@ def machine_of(path: str) -> MachineParameters:
     return read_machine(str(ROOT / path))
 
 
-class CommandedMachine:
+class CommandedMachine(CheckedMachine):
     """A machine with the commands, blocks and violations of its run."""
 
     def __init__(self, seed: int, machine: str = "") -> None:
         """`machine`: file below the repository; the seed chooses one of MACHINES without it."""
         self.seed, self.random = seed, random.Random(seed)
-        self.machine = machine_of(machine or self.random.choice(MACHINES))
-        self.units = build_units(self.machine, end_when_idle=False)
-        self.offline = OfflineMachine(self.machine, self.units)
-        self.kinds = unit_kinds(self.machine)
-        self.store = StateStore(self.machine)
+        super().__init__(machine_of(machine or self.random.choice(MACHINES)))
         self.blocks: dict[str, list[Any]] = {name: [] for name in self.units}
         self.records: list[CommandRecord] = []
-        self.violations: list[str] = []
         self.counts: Counter[str] = Counter()
         for name, kind in self.kinds.items():
             if kind in ("axis", "spindle") and self.random.random() < POWERED:
@@ -121,7 +106,7 @@ class CommandedMachine:
     def step(self) -> None:
         """A command, or time."""
         if self.random.random() < 0.3:
-            self.tick(self.random.choice((1, 1, 2, 5, 20, 60)))
+            self.run(self.random.choice((1, 1, 2, 5, 20, 60)))
         else:
             self.random_command()
 
@@ -194,78 +179,29 @@ class CommandedMachine:
         asked = Command(unit, command, arguments)
         self.counts["commands"] += 1
         if self.kinds[unit] == "axis" and command in THROUGH_PLC:
-            plc = self.units[PLC]
-            assert isinstance(plc, PlcUnit)
             try:
-                plc.input(asked)
+                self.plc.input(asked)
             except CncError:
                 self.counts["refused"] += 1
             return
-        of = self.units[unit]
-        before, left = self.state(), Record(of)
-        record = self.offline.runner(unit).command(asked)
-        if record.accepted:
-            return
-        self.counts["refused"] += 1
-        if not any(text in record.message for text in UNCHANGED):
-            self.require("ErrorStop" in record.message, f"{unit} {command} {arguments}: {record.message}")
-            return
-        with left.taken_away():
-            after = self.state()
-        self.require(before == after, f"{unit} {command} {arguments} changed something: {record.message}")
+        self.counts["refused"] += not self.command(asked).accepted
 
-    def state(self) -> bytes:
-        """All units as bytes, without what is kept from one command to the next for its record alone."""
-        for unit in self.units.values():
-            unit._warning, unit._warning_id, unit._values, unit._given_by = "", 0, {}, A_CLIENT
-        return self.store.encode(self.offline, with_plc=True)
-
-    def tick(self, blocks: int) -> None:
+    def run(self, blocks: int) -> None:
+        """Time goes on."""
         for _ in range(blocks):
-            outputs = self.offline.tick()
             self.counts["blocks"] += 1
-            for name, output in outputs.items():
+            for name, output in self.tick().items():
                 self.blocks[name].append(output.block)
                 self.records += output.records
-                self.check_block(name, output.block)
-            self.check_owners(outputs)
-
-    # invariants
+                self.counts["blocks of units in motion"] += moves(output.block)
 
     def require(self, holds: bool, text: str) -> None:
-        if not holds:
-            self.violations.append(f"seed {self.seed} cycle {self.offline.next_cycle}: {text}")
-
-    def check_block(self, name: str, block: Any) -> None:
-        """Error and ErrorStop go together; without power there is no job."""
-        if not isinstance(block, (AxisBlock, SpindleBlock)):
-            return
-        speeds = block.set_velocity if isinstance(block, AxisBlock) else block.set_speed_rpm
-        self.counts["blocks of units in motion"] += any(speeds)
-        for state, error in zip(block.state, block.error_id, strict=True):
-            self.require(
-                (state == S.ERROR_STOP) == (error != 0) or self.is_pair(block), f"{name} {state} error {error}"
-            )
-        self.require(block.state[-1] != S.DISABLED or not block.job, f"{name} without power has job {block.job}")
-
-    def is_pair(self, block: Any) -> bool:
-        """A gantry slave in error follows its master to the end."""
-        return isinstance(block, AxisBlock) and bool(block.master)
-
-    def check_owners(self, outputs: Mapping[str, Any]) -> None:
-        """No axis is on two paths; one in SynchronizedMotion has a master or a path."""
-        blocks = [output.block for output in outputs.values() if isinstance(output.block, ChannelBlock)]
-        taken = [axis for block in blocks if block.path_active for axis in block.axes]
-        self.require(len(taken) == len(set(taken)), f"axes on two paths: {taken}")
-        for name, output in outputs.items():
-            block = output.block
-            if isinstance(block, AxisBlock) and block.state[-1] == S.SYNCHRONIZED_MOTION:
-                self.require(bool(block.master) or name in taken, f"{name} is led by nobody")
+        super().require(holds, f"seed {self.seed} cycle {self.offline.next_cycle}: {text}")
 
     def finish(self) -> list[str]:
         """Comes to rest, then motion and replay are checked; all violations of the run."""
         self.offline.stop()
-        self.tick(100)
+        self.run(100)
         result = check_motion(inputs_of(self.machine, self.blocks, self.records))
         self.violations += [f"seed {self.seed}: {violation}" for violation in result.violations]
         self.check_replay()
@@ -296,35 +232,11 @@ def written(value: Any) -> str:
     return repr(value)
 
 
-class Record:
-    """What a refused command leaves in its unit: record and event; in a spindle also its number and its answer."""
-
-    def __init__(self, unit: Unit) -> None:
-        """Before the command is given."""
-        self._unit, self._events = unit, len(unit.events)
-        self._of_spindle = self._spindle()
-
-    def _spindle(self) -> tuple[Any, ...]:
-        unit = self._unit
-        if not isinstance(unit, SpindleUnit):
-            return ()
-        return unit.next_number, unit._job_given, unit._turned_down, [*unit._refused]
-
-    def _put(self, of_spindle: tuple[Any, ...]) -> None:
-        if isinstance(self._unit, SpindleUnit):
-            unit = self._unit
-            unit.next_number, unit._job_given, unit._turned_down, unit._refused[:] = of_spindle
-
-    @contextmanager
-    def taken_away(self) -> Iterator[None]:
-        """For a while the unit does not have it."""
-        unit, now = self._unit, self._spindle()
-        record, told, unit.events[self._events :] = unit.records.pop(), unit.events[self._events :], []
-        self._put(self._of_spindle)
-        yield
-        self._put(now)
-        unit.records.append(record)
-        unit.events.extend(told)
+def moves(block: Any) -> bool:
+    """Of an axis or a spindle with a setpoint of velocity."""
+    if isinstance(block, AxisBlock):
+        return any(block.set_velocity)
+    return isinstance(block, SpindleBlock) and any(block.set_speed_rpm)
 
 
 def inputs_of(

@@ -23,7 +23,7 @@ from cnc_ptp.machine.wiring import build_unit
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import Command, CycleTick
 
-MACHINE = Path(__file__).parents[1] / "config" / "mill.yaml"
+MACHINE = ROOT / "config" / "mill.yaml"
 COUNT = 100
 """Cycles of a block."""
 MANY = 10_000_000

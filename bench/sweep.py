@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from bench.figures import Effort, Figure, ShowProgress, medians_of
+from bench.jobs import ROOT
 from cnc_ptp.machine.run_entries import read_entries
 from cnc_ptp.parameters import load_machine, machine_text
 from cnc_ptp.sweep.goals import read_goals
@@ -16,7 +17,6 @@ from cnc_ptp.sweep.pool import Pool
 from cnc_ptp.sweep.sweep import Sweep, make_job
 from cnc_ptp.sweep.variation import read_variations
 
-ROOT = Path(__file__).parents[1]
 MACHINE = str(ROOT / "config" / "mill.yaml")
 PROGRAM = str(ROOT / "examples" / "tuning.nc")
 VARIANTS = 200

@@ -5,9 +5,9 @@ What would start a process or wait for a machine (run, sweep, web, clients) is r
 
 from __future__ import annotations
 
-import os
 import random
-from collections.abc import Iterator
+import shutil
+from collections.abc import Iterator, Mapping
 from contextlib import chdir
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -18,7 +18,8 @@ from click.testing import CliRunner
 from bench.fuzzing.engine import Broken, Target
 from bench.fuzzing.mutation import HUGE, VALUES
 from bench.fuzzing.recordings import small_recording
-from bench.fuzzing.texts import CAM, CURVE, ROOT, SCENARIO
+from bench.fuzzing.texts import CAM, CURVE, SCENARIO
+from bench.jobs import ROOT
 from cnc_ptp import cli
 
 READ_ONLY = {"run", "sweep", "web", "status", "do", "jog", "watch"}
@@ -82,8 +83,6 @@ def known(group: click.Group, words: tuple[str, ...] = ()) -> Iterator[Known]:
 
 def files(folder: Path) -> None:
     """What command lines name."""
-    import shutil
-
     for name in ("m.yaml", "mill.yaml"):
         text = (ROOT / "config" / "mill.yaml").read_text(encoding="utf-8")
         (folder / name).write_text(text, encoding="utf-8")
@@ -147,7 +146,7 @@ def command_lines(folder: Path) -> Target:
 
     files(folder)
     commands = [*known(cli.main)]
-    before = {path.name for path in folder.iterdir()}
+    before = contents(folder)
     short = [each for each in commands if not each.is_read_only]
 
     def make(draw: random.Random) -> list[str]:
@@ -157,8 +156,7 @@ def command_lines(folder: Path) -> Target:
     def call(words: list[str]) -> None:
         with chdir(folder):
             result = carried_out(words)
-        if folder_changed(folder, before):
-            files(folder)
+        put_back(folder, before)
         if result is None:
             return
         if result.exception is not None and not isinstance(result.exception, SystemExit):
@@ -185,21 +183,17 @@ def carried_out(words: list[str]) -> Any:
         return None
 
 
-def folder_changed(folder: Path, before: set[str]) -> bool:
-    """Removes what a command has written; True when something is missing or was written over."""
+def contents(folder: Path) -> dict[Path, bytes]:
+    """All files in it."""
+    return {path: path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+def put_back(folder: Path, before: Mapping[Path, bytes]) -> None:
+    """The folder is as it was before a command."""
+    if contents(folder) == before:
+        return
     for path in folder.iterdir():
-        if path.name not in before:
-            remove(path)
-    return (
-        before != {path.name for path in folder.iterdir()}
-        or (folder / "m.yaml").stat().st_size != (folder / "mill.yaml").stat().st_size
-    )
-
-
-def remove(path: Path) -> None:
-    if path.is_dir() and not path.is_symlink():
-        for inner in path.iterdir():
-            remove(inner)
-        os.rmdir(path)
-    else:
-        path.unlink()
+        shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
+    for path, data in before.items():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(data)

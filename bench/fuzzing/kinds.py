@@ -27,7 +27,7 @@ KINDS = {
         Kind("sweep-journal", texts.journals, 200),
         Kind("sweep-table", texts.tables, 200),
         Kind("users", texts.users, 200),
-        Kind("mcap-every", recordings.every_byte, 40),
+        Kind("mcap-every", recordings.every_byte, 90),
         *(Kind(name, prepare, 40) for name, prepare in recordings.kinds().items()),
         Kind("checkpoint", recordings.checkpoints, 15),
         Kind("block", messages.blocks, 300),

@@ -1,6 +1,6 @@
 """Messages below DDS: bytes for the decoders of the nodes, requests of services, and the commands that they stand for.
 
-Whatever a unit refuses leaves its state as it was, to the bit.
+The invariants of checked_machine.py hold for whatever comes.
 """
 
 from __future__ import annotations
@@ -14,12 +14,11 @@ from typing import Any, NamedTuple
 
 from rclpy.serialization import serialize_message
 
-from bench.fuzzing.engine import Broken, Target
+from bench.checked_machine import CheckedMachine
+from bench.fuzzing.engine import Broken, Draw, Target
 from bench.fuzzing.mutation import HUGE, mutated_bytes, wild
-from bench.fuzzing.texts import ROOT
+from bench.jobs import ROOT
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.offline import OfflineMachine
-from cnc_ptp.machine.wiring import build_units, unit_kinds
 from cnc_ptp.nodes.bridge.function_blocks import given_inputs
 from cnc_ptp.nodes.bridge.hli.hli_topics import ControlTopic, control_reader
 from cnc_ptp.nodes.bridge.value_topics import ValueTopics
@@ -28,58 +27,37 @@ from cnc_ptp.nodes.topics import BLOCK_CLASSES, HLI_CONTROL, PLC_TOPICS, SERVICE
 from cnc_ptp.nodes.unit.requests import given_arguments, objection
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.plc.hli.hli import Hli
-from cnc_ptp.plc.plc_unit import PlcUnit
-from cnc_ptp.protocol.blocks import Command, CycleBlock
+from cnc_ptp.protocol.blocks import Command
 from cnc_ptp.protocol.commands import COMMANDS, Argument
-from cnc_ptp.protocol.unit import A_CLIENT, PLC, Unit
-from cnc_ptp.spindle.spindle_unit import SpindleUnit
-from cnc_ptp.state.machine_state import StateStore
 from cnc_ptp.wire.block_codec import codec_of, encode_block, has_plain_header, head_of
 from cnc_ptp.wire.stamps import Stamps
 from cnc_ptp.wire.ticks import decode_tick, encode_tick
 
 MACHINES = ("config/mill.yaml", "config/lathe.yaml", "config/gantry.yaml")
 STAMPS = Stamps(0, 1_000_000)
-FRESH = 200
-"""Inputs after which a machine is made anew: it may have come into a state in which it refuses nearly everything."""
+LASTS = 200
+"""Inputs of a machine, then it is made anew: it may have come into a state in which it refuses nearly everything."""
 
 
-class Running:
-    """An offline machine that runs beside the inputs."""
+def new_machine(machine: MachineParameters) -> CheckedMachine:
+    """It has run for some blocks."""
+    new = CheckedMachine(machine)
+    for _ in range(3):
+        new.tick()
+    return new
 
-    def __init__(self, machine: MachineParameters) -> None:
-        self.parameters = machine
-        self.kinds = unit_kinds(machine)
-        self.store = StateStore(machine)
-        self.begin()
 
-    def begin(self) -> None:
-        """A new machine."""
-        self.inputs = 0
-        self.units: Mapping[str, Unit] = build_units(self.parameters, end_when_idle=False)
-        self.machine = OfflineMachine(self.parameters, self.units)
-        self.tick(3)
+def unbroken(machine: CheckedMachine) -> None:
+    """Raises Broken with an invariant that did not hold."""
+    if machine.violations:
+        raise Broken(machine.violations[0])
 
-    def tick(self, blocks: int = 1) -> Mapping[str, CycleBlock]:
-        for _ in range(blocks):
-            outputs = self.machine.tick()
-        return {name: output.block for name, output in outputs.items()}
 
-    def state(self) -> bytes:
-        """Without what the harness takes away, and what the last command has left for its record."""
-        for name, unit in self.units.items():
-            unit.command(Command(name, "?", {}), self.machine.next_cycle)
-            unit.take_events(), unit.take_records()
-            unit._given_by = A_CLIENT  # by whom the last command was
-            if isinstance(unit, SpindleUnit):
-                unit._refused.clear()  # what it tells channels of refusals
-        return self.store.encode(self.machine, with_plc=True)
-
-    @property
-    def plc(self) -> PlcUnit:
-        unit = self.units[PLC]
-        assert isinstance(unit, PlcUnit)
-        return unit
+def computed(machine: CheckedMachine) -> None:
+    """A block; all that units say can be sent and read."""
+    for output in machine.tick().values():
+        codec_of(type(output.block)).decode(encode_block(output.block, STAMPS))
+    unbroken(machine)
 
 
 # commands and services
@@ -98,7 +76,11 @@ class Given(NamedTuple):
 
 def commands(_folder: Path) -> Target:
     """Of all units with arguments of every kind, as blocks, scenarios and services bring them."""
-    running = [Running(read_machine(ROOT / file)) for file in MACHINES]
+    parameters = [read_machine(ROOT / file) for file in MACHINES]
+    running = [*map(new_machine, parameters)]
+
+    def renew() -> None:
+        running[:] = map(new_machine, parameters)
 
     def make(draw: random.Random) -> Given:
         number = draw.randrange(len(running))
@@ -119,35 +101,22 @@ def commands(_folder: Path) -> Target:
 
     def call(given: Given) -> None:
         here = running[given.machine]
-        here.inputs += 1
-        if here.inputs > FRESH:
-            here.begin()
-        unit, kind = here.units[given.unit], here.kinds[given.unit]
-        arguments, reason = given.arguments, ""
+        kind, arguments, reason = here.kinds[given.unit], given.arguments, ""
         if given.by_service and given.command in SERVICES[kind]:
             request = request_of(SERVICES[kind][given.command], arguments)
             known = COMMANDS[kind][given.command]
             arguments, reason = given_arguments(known, request), objection(given.command, known, request)
         if reason:
             return
-        before = here.state()
-        record = unit.command(Command(given.unit, given.command, arguments), here.machine.next_cycle)
-        if not record.accepted and here.state() != before:
-            refusal = f"{record.error_id} {record.message[:200]}"
-            raise Broken(f"{given.unit}: {given.command} was refused ({refusal}) and has changed it")
-        error = None if record.accepted else CncError(record.error_id, record.message)
+        record = here.command(Command(given.unit, given.command, arguments))
+        unbroken(here)
         json.loads(record.arguments_json)
-        codec_safe(here.tick(given.blocks) if given.blocks else {})
-        if error is not None:
-            raise error
+        for _ in range(given.blocks):
+            computed(here)
+        if not record.accepted:
+            raise CncError(record.error_id, record.message)
 
-    return Target(make, call)
-
-
-def codec_safe(blocks: Mapping[str, CycleBlock]) -> None:
-    """All that units say can be sent and read."""
-    for block in blocks.values():
-        codec_of(type(block)).decode(encode_block(block, STAMPS))
+    return Target(make, call, renew=renew, lasts=LASTS)
 
 
 def drawn(argument: Argument, units: list[str], draw: random.Random) -> Any:
@@ -223,44 +192,49 @@ def function_blocks(_folder: Path) -> Target:
     from cnc_ptp.plc.called_blocks import CalledBlocks
     from cnc_ptp.plc.plcopen.catalogue import BLOCK_TYPES
 
-    running = Running(read_machine(ROOT / MACHINES[0]))
-    blocks: list[CalledBlocks] = []
+    parameters = read_machine(ROOT / MACHINES[0])
+    running: list[tuple[CheckedMachine, CalledBlocks]] = []
 
-    def begin() -> None:
-        running.begin()
-        blocks[:] = [CalledBlocks(running.kinds, running.parameters.sets, running.plc.is_lost)]
-        running.plc.outside.append(blocks[0].cycle)
+    def renew() -> None:
+        machine = new_machine(parameters)
+        blocks = CalledBlocks(machine.kinds, parameters.sets, machine.plc.is_lost)
+        machine.plc.outside.append(blocks.cycle)
+        running[:] = [(machine, blocks)]
 
-    begin()
+    renew()
+    kinds = running[0][0].kinds
     fields = action.FunctionBlock.Goal.get_fields_and_field_types()
 
-    def make(draw: random.Random) -> tuple[str, str, dict[str, Any]]:
-        unit, kind = draw.choice([(unit, kind) for unit, kind in running.kinds.items() if kind in BLOCK_TYPES])
+    def make(draw: Draw) -> FunctionBlockGoal:
+        unit, kind = draw.choice([(unit, kind) for unit, kind in kinds.items() if kind in BLOCK_TYPES])
         name = draw.choice([*BLOCK_TYPES[kind], "MC_Nothing", ""])
         chosen = draw.sample([*fields], k=draw.randint(0, 8))
-        return (
-            unit,
-            name,
-            {field: drawn(Argument(OF_FIELD.get(fields[field], "rows")), [*running.kinds], draw) for field in chosen},
-        )
+        values = {field: drawn(Argument(OF_FIELD.get(fields[field], "rows")), [*kinds], draw) for field in chosen}
+        return FunctionBlockGoal(unit, name, values, draw.number % 3 == 0)
 
-    def call(given: tuple[str, str, dict[str, Any]]) -> None:
-        running.inputs += 1
-        if running.inputs > FRESH:
-            begin()
-        unit, name, values = given
-        goal = request_of(GoalOf, values)
+    def call(given: FunctionBlockGoal) -> None:
+        machine, blocks = running[0]
+        goal = request_of(GoalOf, given.values)
         try:
-            call = blocks[0].start(unit, name, given_inputs(goal, f"{unit}: {name} refused"))
-            if running.inputs % 3 == 0:
-                blocks[0].cancel(call)
+            call = blocks.start(given.unit, given.name, given_inputs(goal, f"{given.unit}: {given.name} refused"))
+            if given.cancelled:
+                blocks.cancel(call)
         finally:
-            codec_safe(running.tick())
+            computed(machine)
 
     class GoalOf:
         Request = action.FunctionBlock.Goal
 
-    return Target(make, call)
+    return Target(make, call, renew=renew, lasts=LASTS)
+
+
+class FunctionBlockGoal(NamedTuple):
+    """A block with the fields of its goal."""
+
+    unit: str
+    name: str
+    values: dict[str, Any]
+    cancelled: bool
 
 
 OF_FIELD = {
@@ -279,9 +253,10 @@ OF_FIELD = {
 
 def blocks(_folder: Path) -> Target:
     """Blocks and ticks as they come over a topic or lie in a recording."""
-    running = Running(read_machine(ROOT / MACHINES[0]))
-    running.plc.input(Command("channel", "mdi", {"text": "M3 S500 G1 X10 F500"}))
-    sent = [(type(block), encode_block(block, STAMPS)) for _ in range(40) for block in running.tick().values()]
+    machine = new_machine(read_machine(ROOT / MACHINES[0]))
+    machine.plc.input(Command("channel", "mdi", {"text": "M3 S500 G1 X10 F500"}))
+    told = [output.block for _ in range(40) for output in machine.tick().values()]
+    sent = [(type(block), encode_block(block, STAMPS)) for block in told]
     sent += [(type(None), encode_tick(10, 10, 0, 10_000_000))] * 20
     others = [data for _, data in sent]
 
@@ -305,16 +280,17 @@ def blocks(_folder: Path) -> Target:
 
 def topics(_folder: Path) -> Target:
     """Topics of an external PLC: values and HLI, as bytes, with blocks in between."""
-    running = Running(read_machine(ROOT / MACHINES[0]))
+    parameters = read_machine(ROOT / MACHINES[0])
+    running: list[CheckedMachine] = []
     receivers: dict[str, Callable[[bytes], None]] = {}
     warned: list[tuple[int, str]] = []
 
-    def begin() -> None:
-        running.begin()
-        plc, parameters = running.plc, running.parameters
+    def renew() -> None:
+        running[:] = [new_machine(parameters)]
+        plc, kinds = running[0].plc, running[0].kinds
         values = ValueTopics(parameters, plc, lambda number, text: warned.append((number, text)))
-        hli = Hli(plc, kinds=running.kinds, largest_overrides=largest_overrides(parameters), timeout=1.0, numbers={})
-        for unit, kind in running.kinds.items():
+        hli = Hli(plc, kinds=kinds, largest_overrides=largest_overrides(parameters), timeout=1.0, numbers={})
+        for unit, kind in kinds.items():
             for name in PLC_TOPICS.get(kind, {}):
                 if name in VALUE_TOPICS:
                     receivers[f"{unit} {name}"] = values.receiver(unit, name)
@@ -323,30 +299,27 @@ def topics(_folder: Path) -> Target:
 
     def sent(topic: str, draw: random.Random) -> bytes:
         unit, name = topic.split()
-        of = HLI_CONTROL[running.kinds[unit]] if name == "hli" else VALUE_TOPICS[name]
+        of = HLI_CONTROL[running[0].kinds[unit]] if name == "hli" else VALUE_TOPICS[name]
         message = of()
         fill(message, draw)
         message.header.frame_id = draw.choice(("plc", "", "other", "x" * draw.choice((1, 7, 300))))
         return bytes(serialize_message(message))
 
-    def make(draw: random.Random) -> tuple[str, bytes]:
+    def make(draw: Draw) -> tuple[str, bytes, bool]:
         topic = draw.choice([*receivers])
         data = sent(topic, draw)
-        return topic, data if draw.random() < 0.5 else mutated_bytes(data, draw)
+        return topic, data if draw.random() < 0.5 else mutated_bytes(data, draw), draw.number % 4 == 0
 
-    def call(given: tuple[str, bytes]) -> None:
-        running.inputs += 1
-        if running.inputs > FRESH:
-            begin()
-        topic, data = given
+    def call(given: tuple[str, bytes, bool]) -> None:
+        topic, data, then_time = given
         try:
             receivers[topic](data)
         finally:
-            if running.inputs % 4 == 0:
-                codec_safe(running.tick())
+            if then_time:
+                computed(running[0])
 
-    begin()
-    return Target(make, call)
+    renew()
+    return Target(make, call, renew=renew, lasts=LASTS)
 
 
 def fill(message: Any, draw: random.Random) -> None:

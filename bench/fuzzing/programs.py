@@ -7,11 +7,11 @@ from __future__ import annotations
 import random
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from bench.fuzzing.engine import Target
 from bench.fuzzing.mutation import mutated_text
+from bench.jobs import ROOT
 from cnc_ptp.channel.program_check import ProgramCheck
 from cnc_ptp.nc.canonical_text import format_block
 from cnc_ptp.nc.coordinates.codes import initial_state
@@ -23,7 +23,6 @@ from cnc_ptp.nc.program import Limits
 from cnc_ptp.nc.vocabularies import VOCABULARIES
 from cnc_ptp.parameters import NO_OFFSET_TABLES, NO_TOOLS, OffsetTables, Tool, ToolTable, read_machine
 
-ROOT = Path(__file__).parents[2]
 AXES = ("X", "Y", "Z")
 SPINDLES = ("S", "S2")
 LIMITS = Limits(call_depth=5, repeats=200)

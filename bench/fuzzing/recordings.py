@@ -16,7 +16,7 @@ from mcap.reader import make_reader
 from mcap.records import Schema
 from mcap.writer import CompressionType, Writer
 
-from bench.fuzzing.engine import Broken, Draw, Target
+from bench.fuzzing.engine import Broken, Draw, Target, void
 from bench.fuzzing.mutation import mutated_bytes, mutated_text
 from cnc_ptp.commands.look.report import report
 from cnc_ptp.commands.run.replay import replay
@@ -120,9 +120,10 @@ def every_byte(folder: Path) -> Target:
     return Target(make, call)
 
 
-def refusal_of(reader: Callable[[Path], None], file: Path) -> CncError | None:
+def refusal_of(reader: Callable[[Any], object], given: Any) -> CncError | None:
+    """What a reader says against it; None if it takes it."""
     try:
-        reader(file)
+        reader(given)
     except CncError as error:
         return error
     return None
@@ -174,17 +175,9 @@ def replay_all(file: Path) -> None:
             store = StateStore(inputs.required_machine())
             store.texts.update(inputs.checkpoint_texts())
             for state in inputs.states_before(inputs.end):
-                refused_or(lambda state=state: store.restore(state()))
+                refusal_of(lambda read: store.restore(read()), state)  # an older one is taken where one is damaged
     with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
         replay(str(file), verify=True, publish=False, rate=1.0)
-
-
-def refused_or(call: Callable[[], Any]) -> None:
-    """An older checkpoint is taken where one is damaged."""
-    try:
-        call()
-    except CncError:
-        return
 
 
 READERS = {"read": read_all, "open": open_all, "recover": recover_all, "report": make_report, "replay": replay_all}
@@ -247,10 +240,6 @@ def forged(content: str, draw: random.Random) -> str:
         if not value:
             break
     return json.dumps(value)
-
-
-def void(_value: object) -> None:
-    """What came out is not looked at."""
 
 
 def kinds() -> dict[str, Callable[[Path], Target]]:

@@ -8,8 +8,9 @@ from collections.abc import Callable, Mapping
 from functools import cache, partial
 from pathlib import Path
 
-from bench.fuzzing.engine import Broken, Target
+from bench.fuzzing.engine import Broken, Target, void
 from bench.fuzzing.mutation import VALUES, mutated_bytes, mutated_text, mutated_yaml
+from bench.jobs import ROOT
 from cnc_ptp.commissioning.curve_points import parse_point, parse_point_file
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.parameters import MachineParameters, load_machine, machine_text, read_machine
@@ -26,7 +27,6 @@ from cnc_ptp.sweep.table import read_table
 from cnc_ptp.sweep.variation import check_variations, read_variations
 from cnc_ptp.web.access.users import read_users
 
-ROOT = Path(__file__).parents[2]
 MILL, LATHE = ROOT / "config" / "mill.yaml", ROOT / "config" / "lathe.yaml"
 
 
@@ -307,7 +307,3 @@ def users(folder: Path) -> Target:
         read_users(file)
 
     return Target(make, call)
-
-
-def void(_value: object) -> None:
-    """What came out is not looked at."""

@@ -6,6 +6,7 @@ import asyncio
 import json
 import logging
 import random
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -27,10 +28,14 @@ from cnc_ptp.web.programs.programs import ProgramFolder
 from cnc_ptp.web.server import Server
 from cnc_ptp.web.session import Session
 
-PATIENCE = 0.2
-"""Seconds for an answer: a request that is not whole gets none."""
-FRESH = 3000
-"""Messages after which the server is made anew."""
+PATIENCE = 20.0
+"""Seconds for the answer to a request that is whole."""
+SHORT_PATIENCE = 0.2
+"""Seconds for a request that is not whole: the server may wait for its rest."""
+NO_ANSWER = 0
+"""Stands for the status of an answer that did not come."""
+LASTS = 200
+"""Messages of a server, then it is made anew."""
 MESSAGES: tuple[dict[str, Any], ...] = (
     {"type": "command", "id": 1, "unit": "x", "command": "move_absolute", "arguments": {"target": 10, "velocity": 20}},
     {"type": "command", "id": 1, "unit": "s", "command": "start", "arguments": {"direction": "cw", "speed_rpm": 500}},
@@ -121,7 +126,6 @@ class Site:
         (programs / "part.nc").write_text("G0 X1\nM30\n")
         self.loop = asyncio.new_event_loop()
         self._folder = str(programs)
-        self.handled = 0
         self.loop.run_until_complete(self._begin())
 
     async def _begin(self) -> None:
@@ -178,11 +182,14 @@ class Sites:
         self._now = Site(folder)
 
     def next_one(self) -> Site:
-        self._now.handled += 1
-        if self._now.handled > FRESH or self._now.hub.face is None:
-            self._now.close()
-            self._now = Site(self._folder)
+        """A new one where a message has ended its machine."""
+        if self._now.hub.face is None:
+            self.renew()
         return self._now
+
+    def renew(self) -> None:
+        self._now.close()
+        self._now = Site(self._folder)
 
     def close(self) -> None:
         self._now.close()
@@ -216,7 +223,7 @@ def socket_messages(folder: Path) -> Target:
         if refused:
             raise CncError(refused[0]["number"], refused[0]["text"])
 
-    return Target(make, call, sites.close)
+    return Target(make, call, sites.close, sites.renew, LASTS)
 
 
 def begins_task(text: str) -> bool:
@@ -306,24 +313,37 @@ def http_requests(folder: Path) -> Target:
         cookie = f"cnc_ptp_{here.http.port}={here.cookie}".encode()
         data = data.replace(b"cnc_ptp_PORT=COOKIE", cookie).replace(b"TOKEN", here.login.token.encode())
         status = here.loop.run_until_complete(asked(here, data))
-        if status >= 500 and status not in (501, 503, 505):
+        if status == NO_ANSWER and is_whole(data):
+            raise Broken(f"no answer to a whole request within {PATIENCE:g} s, or a connection closed without one")
+        if status >= 500:
             raise Broken(f"status {status}")
         if status >= 400:
             raise CncError(26233, f"status {status}")
 
-    return Target(make, call, sites.close)
+    return Target(make, call, sites.close, sites.renew, LASTS)
+
+
+def is_whole(data: bytes) -> bool:
+    """Its headers have an end, and its body is not shorter than they say."""
+    head, end, body = data.partition(b"\r\n\r\n")
+    lengths = [int(digits) for digits in LENGTH.findall(head)]
+    return bool(end) and max(lengths, default=0) <= len(body) and b"chunked" not in head.lower()
+
+
+LENGTH = re.compile(rb"(?i)\bcontent-length\s*:\s*([0-9]{1,18})")
 
 
 async def asked(here: Site, data: bytes) -> int:
-    """The status of the answer; 0 without one."""
+    """The status of the answer, which was read to the end of its headers, and to its own end if the server closes."""
     reader, writer = await asyncio.open_connection("127.0.0.1", here.http.port)
     try:
-        writer.write(data)
-        first = await asyncio.wait_for(reader.readline(), PATIENCE)
-        await asyncio.wait_for(reader.read(1 << 22), PATIENCE)
-    except (OSError, TimeoutError):
-        return 0
+        async with asyncio.timeout(PATIENCE if is_whole(data) else SHORT_PATIENCE):
+            writer.write(data)
+            head = await reader.readuntil(b"\r\n\r\n")
+            if b"connection: close" in head.lower():
+                await reader.read()
+    except (OSError, TimeoutError, asyncio.IncompleteReadError):
+        return NO_ANSWER
     finally:
         writer.close()
-    words = first.split()
-    return int(words[1]) if len(words) > 1 and words[1].isdigit() else 0
+    return int(head.split()[1])

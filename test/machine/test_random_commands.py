@@ -33,7 +33,7 @@ class RandomCommands(RuleBasedStateMachine):
 
     @rule(blocks=st.sampled_from((1, 2, 5, 20, 60)))
     def time(self, blocks: int) -> None:
-        self.machine.tick(blocks)
+        self.machine.run(blocks)
         assert self.machine.violations == []
 
     def teardown(self) -> None:

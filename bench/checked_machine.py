@@ -1,0 +1,141 @@
+"""An offline machine that is commanded from outside; after each command and block its invariants are looked at.
+
+- a refusal that says that nothing was changed leaves the state of all units as it was, bit by bit; after others
+  it is in ErrorStop,
+- setpoints are finite, ErrorStop and an error number go together, without power there is no job,
+- a path has one owner, and nobody is led by nobody.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any
+
+from cnc_ptp.machine.offline import OfflineMachine
+from cnc_ptp.machine.wiring import build_units, unit_kinds
+from cnc_ptp.parameters import MachineParameters
+from cnc_ptp.plc.plc_unit import PlcUnit
+from cnc_ptp.protocol.axis_states import AxisStateCode as S
+from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, Command, CommandRecord, SpindleBlock
+from cnc_ptp.protocol.unit import A_CLIENT, PLC, Unit
+from cnc_ptp.spindle.spindle_unit import SpindleUnit
+from cnc_ptp.state.machine_state import StateStore
+
+UNCHANGED = ("nothing was changed", "nothing was executed")
+"""What a refusal says that leaves everything as it was."""
+
+
+class CheckedMachine:
+    """A new machine; `violations` has the invariants that did not hold."""
+
+    def __init__(self, machine: MachineParameters) -> None:
+        self.machine = machine
+        self.units: Mapping[str, Unit] = build_units(machine, end_when_idle=False)
+        self.offline = OfflineMachine(machine, self.units)
+        self.kinds = unit_kinds(machine)
+        self.violations: list[str] = []
+        self._store = StateStore(machine)
+
+    @property
+    def plc(self) -> PlcUnit:
+        unit = self.units[PLC]
+        assert isinstance(unit, PlcUnit)
+        return unit
+
+    def command(self, command: Command) -> CommandRecord:
+        """One command that its unit gets between two blocks; what a refusal changes is a violation."""
+        before, left = self.state(), Record(self.units[command.target])
+        record = self.offline.runner(command.target).command(command)
+        if record.accepted:
+            return record
+        said = f"{command.target} {command.command} {command.arguments}: {record.message}"
+        if any(text in record.message for text in UNCHANGED):
+            with left.taken_away():
+                after = self.state()
+            self.require(before == after, f"a refusal has changed something: {said}")
+        else:
+            self.require("ErrorStop" in record.message, said)
+        return record
+
+    def tick(self) -> Mapping[str, Any]:
+        """The outputs of the next block."""
+        outputs = self.offline.tick()
+        for name, output in outputs.items():
+            self.check_block(name, output.block)
+        self.check_owners(outputs)
+        return outputs
+
+    def state(self) -> bytes:
+        """All units as bytes, without what is kept from one command to the next for its record alone."""
+        for unit in self.units.values():
+            unit._warning, unit._warning_id, unit._values, unit._given_by = "", 0, {}, A_CLIENT
+        return self._store.encode(self.offline, with_plc=True)
+
+    def require(self, holds: bool, text: str) -> None:
+        if not holds:
+            self.violations.append(text)
+
+    def check_block(self, name: str, block: Any) -> None:
+        """Setpoints are finite; error and ErrorStop go together; without power there is no job."""
+        if not isinstance(block, (AxisBlock, SpindleBlock)):
+            return
+        self.require(all(map(math.isfinite, setpoints(block))), f"{name} has a setpoint that is not finite")
+        for state, error in zip(block.state, block.error_id, strict=True):
+            self.require(
+                (state == S.ERROR_STOP) == (error != 0) or self.is_pair(block), f"{name} {state} error {error}"
+            )
+        self.require(block.state[-1] != S.DISABLED or not block.job, f"{name} without power has job {block.job}")
+
+    def is_pair(self, block: Any) -> bool:
+        """A gantry slave in error follows its master to the end."""
+        return isinstance(block, AxisBlock) and bool(block.master)
+
+    def check_owners(self, outputs: Mapping[str, Any]) -> None:
+        """No axis is on two paths; one in SynchronizedMotion has a master or a path."""
+        blocks = [output.block for output in outputs.values() if isinstance(output.block, ChannelBlock)]
+        taken = [axis for block in blocks if block.path_active for axis in block.axes]
+        self.require(len(taken) == len(set(taken)), f"axes on two paths: {taken}")
+        for name, output in outputs.items():
+            block = output.block
+            if isinstance(block, AxisBlock) and block.state[-1] == S.SYNCHRONIZED_MOTION:
+                self.require(bool(block.master) or name in taken, f"{name} is led by nobody")
+
+
+def setpoints(block: AxisBlock | SpindleBlock) -> list[float]:
+    """Positions and velocities of a block."""
+    if isinstance(block, AxisBlock):
+        return [*block.set_position, *block.set_velocity]
+    return [*block.set_position_deg, *block.set_speed_rpm]
+
+
+class Record:
+    """What a refused command leaves in its unit: record and event; in a spindle also its number and its answer."""
+
+    def __init__(self, unit: Unit) -> None:
+        """Before the command is given."""
+        self._unit, self._events = unit, len(unit.events)
+        self._of_spindle = self._spindle()
+
+    def _spindle(self) -> tuple[Any, ...]:
+        unit = self._unit
+        if not isinstance(unit, SpindleUnit):
+            return ()
+        return unit.next_number, unit._job_given, unit._turned_down, [*unit._refused]
+
+    def _put(self, of_spindle: tuple[Any, ...]) -> None:
+        if isinstance(self._unit, SpindleUnit):
+            unit = self._unit
+            unit.next_number, unit._job_given, unit._turned_down, unit._refused[:] = of_spindle
+
+    @contextmanager
+    def taken_away(self) -> Iterator[None]:
+        """For a while the unit does not have it."""
+        unit, now = self._unit, self._spindle()
+        record, told, unit.events[self._events :] = unit.records.pop(), unit.events[self._events :], []
+        self._put(self._of_spindle)
+        yield
+        self._put(now)
+        unit.records.append(record)
+        unit.events.extend(told)
