@@ -172,7 +172,7 @@ def measure(effort: Effort, segments: int) -> WebRun:
             process.initialise()
             run = session(port, psutil.Process(graph.pid), effort)
         except Exception as error:
-            raise RuntimeError(f"{error}; the graph has said: {told.read_text()[-2000:]}") from error
+            raise RuntimeError(f"{error}; the graph has said: {told.read_text()}") from error
         finally:
             graph.terminate()
             graph.wait(LONGEST_START)
