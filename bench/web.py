@@ -1,14 +1,13 @@
-"""The web face on the mill of 8 processes in real time: scopes, buttons, positions, a large backplot, ends of jogs.
-
-What needs no picture is measured with plain WebSocket clients (scope, lateness, core, commands); what a person sees and
-presses with pages in headless Chromium (positions, jog button, backplot, first view). All of them run at nice 10.
+"""The web face on the mill of 8 processes in real time, with pages in headless Chromium: scopes, buttons, positions, ends
+of jogs. The browsers run at nice 19: people have them on another computer.
 """
 
 from __future__ import annotations
 
-import asyncio
 import os
+import random
 import re
+import socket
 import subprocess
 import sys
 import tempfile
@@ -24,34 +23,55 @@ from typing import Any
 
 import psutil
 
-BROWSER_TESTS = str(Path(__file__).parents[1] / "test" / "web_browser")
-sys.path.insert(0, BROWSER_TESTS)
+from bench.figures import Effort, Figure, ShowProgress
+from bench.graph import missing_samples
+from bench.graph_run import process_seconds
+from bench.jobs import MACHINE, long_program
+from bench.plc import p99
+from bench.web_jogs import End, Observer, Proxy, killed, own_browser, presses, stalled
+from cnc_ptp.recording.node_figures import LATENESS_P99
 
-from measure import TURN, first_view, size_of_pages  # noqa: E402
+sys.path.insert(0, str(Path(__file__).parents[1] / "test" / "web_browser"))
+
 from web_browser_support import open_page, until, why_no_browser  # noqa: E402
 
-from bench.big_program import write_program  # noqa: E402
-from bench.figures import Effort, Figure, ShowProgress  # noqa: E402
-from bench.graph import missing_samples  # noqa: E402
-from bench.graph_run import process_seconds  # noqa: E402
-from bench.jobs import MACHINE  # noqa: E402
-from bench.plc import p99  # noqa: E402
-from bench.web_clients import CLIENTS, SIGNALS, ClientRun, Observer, watch  # noqa: E402
-from bench.web_ends import KINDS, End, ends, limits_of_ramps, own_browser, press  # noqa: E402
-
-COMMANDS, PRESSES, ENDS, VIEWS = 200, 100, 100, 5
-SEGMENTS = 150_000
-NICENESS = 10
+SIGNALS = [
+    *(f"{axis}.{field}" for axis in "xyz" for field in ("set_position", "following_error")),
+    "channel.path_velocity",
+    "s.actual_speed_rpm",
+]
+"""Eight, at 1 kHz."""
+PAGES = 2
+PRESSES, KILLED, STALLED = 100, 50, 50
+SEED = 20
+NICENESS = 19
 DISPLAYED = 10.0
 """Seconds for which positions are counted."""
+SETTLING = 2.0
 LONGEST_START = 120.0
 """Seconds until the graph runs, and until it has ended."""
-LONGEST_DRAWING = 240.0
-"""Seconds until the server has drawn the large program, beside the machine."""
-BETWEEN = 0.4
-PRESSED = """() => document.addEventListener("pointerdown", (event) => {
-    window.pressedAt = performance.timeOrigin + event.timeStamp;
-}, true)"""
+KEEP_VIEW = """(names) => {
+    const channels = names.map((name, i) => ({ name, graph: 1 + i % 4 }));
+    localStorage.setItem("scope-views", JSON.stringify({ bench: { channels, window: 2 } }));
+    location.hash = "scope";
+}"""
+COUNT_SAMPLES = """() => {
+    const take = app.connection.onBinary;
+    window.seen = { samples: 0, lost: 0 };
+    let next = -1;
+    app.connection.onBinary = (data) => {
+        const [, low, high, , count] = new Uint32Array(data, 0, 5);
+        const first = low + high * 2 ** 32;
+        if (next >= 0) seen.lost += Math.max(0, first - next);
+        seen.samples += count;
+        next = first + count;
+        take(data);
+    };
+}"""
+RUN_PROGRAM = """async (text) => {
+    await app.request("load", { channel: "channel", name: "rounds.nc", text });
+    await app.command("channel", "start", {});
+}"""
 COUNT_POSITIONS = """(ms) => new Promise((done) => {
     let shown = 0;
     const watch = new MutationObserver(() => { shown += 1; });
@@ -63,24 +83,18 @@ COUNT_POSITIONS = """(ms) => new Promise((done) => {
 
 @dataclass(slots=True)
 class WebRun:
-    """What was measured; times in ms, but where s is said."""
+    """What was measured; times in ms."""
 
-    clients: ClientRun = field(default_factory=ClientRun)
-    presses: list[float] = field(default_factory=list)
+    samples: int = 0
+    lost: int = 0
+    """Cycles of the scopes that have not come."""
+    core: float = nan
+    lateness_p99: float = nan
     positions: float = nan
-    """Positions a second that a page shows."""
-    first_views: list[float] = field(default_factory=list)
-    """s"""
-    drawn: float = nan
-    """Until a large program is shown that the server has to draw first …"""
-    shown: float = nan
-    """… and once it is drawn."""
-    frames: list[float] = field(default_factory=list)
-    """A second, while the path is turned; three times."""
-    point: int = 1
-    """Each of these points of the path is drawn meanwhile."""
-    ends: list[End] = field(default_factory=list)
-    lost: float = nan
+    """A second, on a page."""
+    reactions: list[float] = field(default_factory=list)
+    ends: dict[str, list[End]] = field(default_factory=dict)
+    blocks_lost: float = nan
     missing: int = 0
 
 
@@ -88,81 +102,39 @@ def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
     """All in one run of the graph."""
     if reason := why_no_browser():
         raise RuntimeError(reason)
-    segments = effort.scaled(SEGMENTS, least=1000)
-    show(f"{effort.graph_seconds:.0f} s of {CLIENTS} scopes, then pages in Chromium")
+    show(f"{effort.graph_seconds:.0f} s of {PAGES} scopes, then {effort.scaled(PRESSES, least=2)} jogs and other ends")
     os.environ["ROS_DOMAIN_ID"] = str(1 + os.getpid() % 100)
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
-        run = pool.submit(measure, effort, segments).result()
-    yield from of_clients(run)
-    yield from of_pages(run, segments)
-    yield from of_ends(run.ends)
-
-
-def of_clients(run: WebRun) -> Iterator[Figure]:
-    seen = run.clients
-    scopes = f"{CLIENTS} clients with a scope of {len(SIGNALS)} signals at 1 kHz (WebSocket)"
-    yield Figure(f"{scopes}: samples that came", seen.samples, "")
-    yield Figure("samples of the scopes lost", seen.lost, "", goal=0.0, at_most=True)
-    yield Figure(
-        "block lateness of the latest node meanwhile, p99", seen.lateness_p99_ms, "ms", goal=10.0, at_most=True
-    )
-    yield Figure("web meanwhile", seen.core, "cores", goal=0.35, at_most=True)
-    yield Figure("states with a new position (WebSocket), least", seen.states_per_second, "1/s", goal=20.0)
-    yield Figure("blocks lost in the whole run", run.lost, "", goal=0.0, at_most=True)
+        run = pool.submit(measure, effort).result()
+    yield Figure(f"{PAGES} browsers with a scope of {len(SIGNALS)} signals at 1 kHz: samples", run.samples, "")
+    yield Figure("samples of the scopes lost", run.lost, "", goal=0.0, at_most=True)
+    lateness = "block lateness of the latest node meanwhile, p99"
+    yield Figure(lateness, run.lateness_p99, "ms", goal=10.0, at_most=True)
+    yield Figure("web meanwhile", run.core, "cores", goal=0.35, at_most=True)
+    yield Figure("blocks lost in the whole run", run.blocks_lost, "", goal=0.0, at_most=True)
     yield Figure("samples missing in the recording", run.missing, "", goal=0.0, at_most=True)
-    reaction = "override message (WebSocket) to first changed setpoint"
-    yield Figure(f"{reaction}, median", median(seen.reactions), "ms")
-    yield Figure(f"{reaction}, p99", p99(seen.reactions), "ms", goal=60.0, at_most=True)
+    yield Figure("positions that a page shows", run.positions, "1/s", goal=20.0)
+    yield Figure("jog button to first changed setpoint, median", median(run.reactions), "ms")
+    yield Figure("jog button to first changed setpoint, p99", p99(run.reactions), "ms", goal=60.0, at_most=True)
+    for kind, ends in run.ends.items():
+        begins = [end.begins for end in ends]
+        yield Figure(f"jog, {kind}: times", len(ends), "")
+        yield Figure(f"jog, {kind}: stop begins after, median", median(begins), "ms")
+        yield Figure(f"jog, {kind}: stop begins after, largest", max(begins), "ms", goal=250.0, at_most=True)
+        yield Figure(f"jog, {kind}: stands after, largest", max(end.stands for end in ends), "ms")
+        again = sum(end.goes_on > 0.0 for end in ends)
+        yield Figure(f"jog, {kind}: started again", again, "times", goal=0.0, at_most=True)
 
 
-def of_pages(run: WebRun, segments: int) -> Iterator[Figure]:
-    button = "jog button (Chromium) to first changed setpoint"
-    yield Figure(f"{button}, median", median(run.presses), "ms")
-    yield Figure(f"{button}, p99", p99(run.presses), "ms", goal=60.0, at_most=True)
-    yield Figure("positions that a page shows (Chromium)", run.positions, "1/s", goal=20.0)
-    yield Figure("all pages, compressed", size_of_pages()[1] / 1e6, "MB", goal=3.0, at_most=True)
-    yield Figure("first view, median", median(run.first_views), "s", goal=2.0, at_most=True)
-    path = f"backplot of {segments} segments"
-    yield Figure(f"{path}: shown, drawn by the server before that", run.drawn / 1e3, "s")
-    yield Figure(f"{path}: shown, once it is drawn", run.shown / 1e3, "s", goal=3.0, at_most=True)
-    yield Figure(f"{path}: turned, least of {len(run.frames)}", min(run.frames), "frames/s", goal=30.0)
-    yield Figure("each of so many points is drawn while it is turned", run.point, "")
-
-
-def of_ends(found: list[End]) -> Iterator[Figure]:
-    """From the end of a jogging page: until the stop begins, until the axis stands, and whether all were ramps."""
-    most_acceleration, most_jerk = limits_of_ramps()
-    for kind in KINDS:
-        of_kind = [end for end in found if end.kind == kind]
-        if not of_kind:
-            continue
-        name = f"jog, {kind}"
-        yield Figure(f"{name}: times", len(of_kind), "")
-        yield Figure(f"{name}: stop begins after, median", median(end.begins for end in of_kind), "ms")
-        latest = max(end.begins for end in of_kind)
-        yield Figure(f"{name}: stop begins after, largest", latest, "ms", goal=250.0, at_most=True)
-        yield Figure(f"{name}: stands after, median", median(end.stands for end in of_kind), "ms")
-        yield Figure(f"{name}: stands after, largest", max(end.stands for end in of_kind), "ms")
-        acceleration = max(end.acceleration for end in of_kind)
-        yield Figure(f"{name}: largest acceleration", acceleration, "mm/s²", goal=most_acceleration, at_most=True)
-        jerk = max(end.jerk for end in of_kind)
-        yield Figure(f"{name}: largest jerk", jerk, "mm/s³", goal=most_jerk, at_most=True)
-        gained = max(end.overshoot for end in of_kind)
-        yield Figure(f"{name}: velocity gained in the stop", gained, "mm/s", goal=1e-9, at_most=True)
-        again = sum(end.goes_on > 0.0 for end in of_kind)
-        yield Figure(f"{name}: started again", again, "times", goal=0.0, at_most=True)
-
-
-def measure(effort: Effort, segments: int) -> WebRun:
+def measure(effort: Effort) -> WebRun:
     """Starts and ends the graph of the mill with its pages."""
     import rclpy
 
     from cnc_ptp.nodes import process
 
+    port = free_port()
     with tempfile.TemporaryDirectory() as folder:
-        write_program(Path(folder) / "big.nc", segments)
         record, told = str(Path(folder) / "run.mcap"), Path(folder) / "told"
-        port = free_port()
         command = [sys.executable, "-m", "cnc_ptp", "run", MACHINE, "--stay", "--web", str(port), "--record", record]
         with told.open("w") as output:
             graph = subprocess.Popen(command, stdout=output, stderr=subprocess.STDOUT, cwd=folder)
@@ -178,14 +150,12 @@ def measure(effort: Effort, segments: int) -> WebRun:
             graph.wait(LONGEST_START)
             rclpy.try_shutdown()
         if found := re.search(r"lost (\d+), computed twice", told.read_text()):
-            run.lost = int(found[1])
+            run.blocks_lost = int(found[1])
         run.missing = missing_samples(record)
     return run
 
 
 def free_port() -> int:
-    import socket
-
     with socket.socket() as found:
         found.bind(("127.0.0.1", 0))
         return int(found.getsockname()[1])
@@ -196,7 +166,7 @@ def wait_for_pages(graph: subprocess.Popen[bytes], told: Path) -> None:
     deadline = time.monotonic() + LONGEST_START
     while "pages: " not in told.read_text():
         if graph.poll() is not None or time.monotonic() > deadline:
-            raise RuntimeError(f"no pages: {told.read_text()}")
+            raise RuntimeError("no pages")
         time.sleep(0.1)
 
 
@@ -204,43 +174,48 @@ def session(port: int, graph: psutil.Process, effort: Effort) -> WebRun:
     from playwright.sync_api import sync_playwright
 
     server = next(child for child in graph.children() if "--listening" in child.cmdline())
-    observer = Observer()
-    address, run = f"http://127.0.0.1:{port}", WebRun()
-    try:
-        observer.wait(lambda: observer.since(0))
-        commands = effort.scaled(COMMANDS, least=2)
-        watching = watch(address, effort.graph_seconds, commands, observer, lambda: process_seconds(server))
-        run.clients = asyncio.run(watching)
-        with sync_playwright() as playwright:
-            with own_browser(playwright) as (browser, _):
-                run.first_views = [first_view(browser, address) for _ in range(effort.scaled(VIEWS))]
-                page = open_page(browser, address, command=True)
-                run.presses = presses(page, observer, effort.scaled(PRESSES, least=2))
-                run.positions = shown_positions(page, min(DISPLAYED, effort.graph_seconds))
-                backplot(page, run)
-                page.close()
-            run.ends = ends(playwright, port, observer, effort.scaled(ENDS, least=len(KINDS)))
-    finally:
-        observer.close()
+    address, run = f"http://127.0.0.1:{port}/", WebRun()
+    held = random.Random(SEED)
+    with Observer() as observer, Proxy(port) as proxy, sync_playwright() as playwright:
+        scopes(playwright, address, server, effort.graph_seconds, run)
+        with own_browser(playwright) as (browser, _):
+            page = open_page(browser, address, command=True)
+            run.positions = shown_positions(page, min(DISPLAYED, effort.graph_seconds))
+            run.reactions, run.ends["key up"] = presses(page, observer, effort.scaled(PRESSES, least=2), held)
+        run.ends["browser killed"] = [
+            killed(playwright, address, observer, held) for _ in range(effort.scaled(KILLED))
+        ]
+        with own_browser(playwright) as (browser, _):
+            page = open_page(browser, proxy.address, command=True)
+            run.ends["socket stalled"] = [
+                stalled(page, proxy, observer, held) for _ in range(effort.scaled(STALLED))
+            ]
     return run
 
 
-def presses(page: Any, observer: Observer, count: int) -> list[float]:
-    """Milliseconds from a jog button to the first changed setpoint."""
-    page.evaluate(PRESSED)
-    found = []
-    for number in range(count):
-        begin = time.time_ns()
-        press(page, "+−"[number % 2])
-        observer.wait(lambda: abs(observer.velocity) > 1.0)
-        pressed = round(1e6 * page.evaluate("window.pressedAt"))
-        milliseconds = observer.changed(max(begin, pressed), 0.0)
-        assert milliseconds is not None
-        found.append(milliseconds + 1e-6 * max(0, begin - pressed))
-        page.mouse.up()
-        observer.wait(lambda: observer.velocity == 0.0)
-        page.wait_for_timeout(1000.0 * (BETWEEN + 0.0137 * (number % 7)))
-    return found
+def scopes(playwright: Any, address: str, server: psutil.Process, seconds: float, run: WebRun) -> None:
+    """Two browsers look at eight signals of a program that runs."""
+    with own_browser(playwright) as (first, _), own_browser(playwright) as (second, _):
+        pages = [open_page(first, address, command=True), open_page(second, address)]
+        for page in pages:
+            page.evaluate(KEEP_VIEW, SIGNALS)
+            page.select_option("[aria-label='Saved views']", "bench")
+            page.wait_for_selector(f".channels >> text={SIGNALS[-1]}")
+        pages[0].evaluate(RUN_PROGRAM, long_program(seconds + 5.0 * SETTLING))
+        until(pages[0], "app.store.units.channel.state === 'running'")
+        for page in pages:
+            page.evaluate(COUNT_SAMPLES)
+        time.sleep(SETTLING)
+        begin, used = time.monotonic(), process_seconds(server)
+        pages[0].wait_for_timeout(1000.0 * seconds)
+        run.core = (process_seconds(server) - used) / (time.monotonic() - begin)
+        for page in pages:
+            seen = page.evaluate("window.seen")
+            run.samples, run.lost = run.samples + seen["samples"], run.lost + seen["lost"]
+        nodes = pages[0].evaluate("[...app.store.nodes.values()].map((node) => node.values)")
+        run.lateness_p99 = max(float(values[LATENESS_P99]) for values in nodes if LATENESS_P99 in values)
+        pages[0].evaluate("() => app.command('channel', 'reset', {})")
+        until(pages[0], "!app.store.units.channel.active")
 
 
 def shown_positions(page: Any, seconds: float) -> float:
@@ -248,26 +223,6 @@ def shown_positions(page: Any, seconds: float) -> float:
     page.evaluate("() => void app.command('x', 'move_absolute', { target: 200, velocity: 5 })")
     until(page, "app.store.units.x.set_velocity !== 0")
     shown = float(page.evaluate(COUNT_POSITIONS, 1000.0 * seconds))
-    page.evaluate("() => void app.command('x', 'halt')")
+    page.evaluate("() => void app.command('x', 'halt', {})")
     until(page, "app.store.units.x.set_velocity === 0")
     return shown
-
-
-def backplot(page: Any, run: WebRun) -> None:
-    """A large program: drawn by the server and shown, shown again by a page that was left, turned."""
-    page.set_default_timeout(1000.0 * LONGEST_DRAWING)
-    page.evaluate("() => app.request('load', { channel: app.store.channel, name: 'big.nc' })")
-    until(page, "(app.store.units.channel.program || '').endsWith('big.nc')")
-    times = []
-    for _ in range(2):
-        page.evaluate("() => { location.hash = 'watch'; }")
-        page.wait_for_selector(".backplot[data-ms]")
-        times.append(float(page.get_attribute(".backplot", "data-ms")))
-        if len(times) == 1:
-            page.evaluate("() => { location.hash = 'operate'; }")
-            page.wait_for_selector("main.operate")
-    run.drawn, run.shown = times
-    page.evaluate(TURN)
-    turned = [page.evaluate(TURN) for _ in range(3)]
-    run.frames = [1000.0 * frames / took for frames, took, _ in turned]
-    run.point = int(max(step for *_, step in turned))
