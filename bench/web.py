@@ -28,12 +28,12 @@ from bench.graph import missing_samples
 from bench.graph_run import process_seconds
 from bench.jobs import MACHINE, long_program
 from bench.plc import p99
-from bench.web_jogs import End, Observer, Proxy, killed, own_browser, presses, stalled
+from bench.web_jogs import KEEP_PRESSES, End, Observer, Proxy, collect, killed, own_browser, released, stalled
 from cnc_ptp.recording.node_figures import LATENESS_P99
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "test" / "web_browser"))
 
-from web_browser_support import open_page, until, why_no_browser  # noqa: E402
+from web_browser_support import open_page, until, why_no_browser
 
 SIGNALS = [
     *(f"{axis}.{field}" for axis in "xyz" for field in ("set_position", "following_error")),
@@ -181,15 +181,15 @@ def session(port: int, graph: psutil.Process, effort: Effort) -> WebRun:
         with own_browser(playwright) as (browser, _):
             page = open_page(browser, address, command=True)
             run.positions = shown_positions(page, min(DISPLAYED, effort.graph_seconds))
-            run.reactions, run.ends["key up"] = presses(page, observer, effort.scaled(PRESSES, least=2), held)
-        run.ends["browser killed"] = [
-            killed(playwright, address, observer, held) for _ in range(effort.scaled(KILLED))
-        ]
+            page.evaluate(KEEP_PRESSES)
+            count = effort.scaled(PRESSES, least=2)
+            run.ends["key up"] = collect(count, lambda: released(page, observer, held, run.reactions))
+        count = effort.scaled(KILLED)
+        run.ends["browser killed"] = collect(count, lambda: killed(playwright, address, observer, held))
         with own_browser(playwright) as (browser, _):
             page = open_page(browser, proxy.address, command=True)
-            run.ends["socket stalled"] = [
-                stalled(page, proxy, observer, held) for _ in range(effort.scaled(STALLED))
-            ]
+            count = effort.scaled(STALLED)
+            run.ends["socket stalled"] = collect(count, lambda: stalled(page, proxy, observer, held))
     return run
 
 
