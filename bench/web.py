@@ -1,5 +1,5 @@
-"""The web face on the mill of 8 processes in real time, with pages in headless Chromium: scopes, buttons, positions, ends
-of jogs. The browsers run at nice 19: people have them on another computer.
+"""The web face on the mill of 8 processes in real time, with pages in headless Chromium: scopes, buttons, positions,
+ends of jogs. The browsers run at nice 19: people have them on another computer.
 """
 
 from __future__ import annotations
