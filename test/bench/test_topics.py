@@ -87,18 +87,16 @@ def test_a_plc_beside_the_graph(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_pages_beside_the_graph(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Clients, a browser, and one end of a jogging page of each kind; how fast, is not judged."""
+    """Two scopes, two jogs by a button, an end of each other kind; how fast, is not judged."""
     if reason := web.why_no_browser():
         pytest.skip(reason)
     monkeypatch.setenv("ROS_DOMAIN_ID", "0")  # it takes a domain of its own, which ends with the test
     figures = {figure.name: figure for figure in web.figures(SMALLEST, print)}
-    assert figures["samples of the scopes lost"].value == figures["samples missing in the recording"].value == 0.0
-    for kind in web.KINDS:
-        assert figures[f"jog, {kind}: times"].value == 1
+    assert figures["2 browsers with a scope of 8 signals at 1 kHz: samples"].value >= 1000.0
+    assert figures["samples missing in the recording"].value == 0.0
+    for kind, times in (("key up", 2), ("browser killed", 1), ("socket stalled", 1)):
+        assert figures[f"jog, {kind}: times"].value == times
         assert figures[f"jog, {kind}: started again"].value == 0
-        assert figures[f"jog, {kind}: velocity gained in the stop"].value == 0.0
-        assert figures[f"jog, {kind}: largest acceleration"].met and figures[f"jog, {kind}: largest jerk"].met
-    assert figures["backplot of 1000 segments: shown, once it is drawn"].value > 0.0
 
 
 def test_figures_of_a_watched_run() -> None:
