@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import random
 import signal
 import sys
@@ -183,19 +184,13 @@ class Proxy:
 
 
 @contextmanager
-def own_browser(playwright: Any) -> Iterator[tuple[Any, Callable[[], None]]]:
-    """A browser, and what kills it: all its processes, by their ids."""
+def own_browser(playwright: Any) -> Iterator[tuple[Any, Callable[[], list[int]]]]:
+    """A browser, and what finds the ids of all its processes."""
     known = set(psutil.Process().children(recursive=True))
     browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
     mine = [each for each in psutil.Process().children(recursive=True) if each not in known and is_browser(each)]
-
-    def kill() -> None:
-        for each in [*mine, *(child for one in mine for child in descendants(one))]:
-            with suppress(psutil.NoSuchProcess):
-                each.send_signal(signal.SIGKILL)
-
     try:
-        yield browser, kill
+        yield browser, lambda: [each.pid for one in mine for each in (one, *descendants(one))]
     finally:
         with suppress(Exception):  # it is gone already
             browser.close()
@@ -260,10 +255,14 @@ def released(page: Any, observer: Observer, held: random.Random, reactions: list
 
 
 def killed(playwright: Any, address: str, observer: Observer, held: random.Random) -> End | None:
-    with own_browser(playwright) as (browser, kill):
-        jog(open_page(browser, address, command=True), observer, held)
+    with own_browser(playwright) as (browser, processes):
+        page = open_page(browser, address, command=True)
+        numbers = processes()  # takes long on a busy computer
+        jog(page, observer, held)
         moment = time.time_ns()
-        kill()
+        for number in numbers:
+            with suppress(ProcessLookupError):
+                os.kill(number, signal.SIGKILL)
         return ended(observer, moment)
 
 
