@@ -34,6 +34,7 @@ TOPICS = (
     "graph",
     "service",
     "plc",
+    "web",
     "client",
     "slaves",
     "spindles",

@@ -55,7 +55,7 @@ def field(message: Message, name: str, kind: str, default: Any = ...) -> Any:
     if not is_of_kind(value, kind):
         article = "an" if kind in ("object", "integer") else "a"
         raise CncError(BAD_MESSAGE, f"{message['type']}: {name} = {str(value)[:40]!r} is not {article} {kind}", NOTHING)
-    return value
+    return float(value) if kind == "number" else value  # JSON of a browser has 5 for 5.0, of which a ROS message dies
 
 
 def is_of_kind(value: Any, kind: str) -> bool:

@@ -36,8 +36,8 @@ async def open_page(session, port):
     return page
 
 
-async def press(page, seconds, velocity=5.0):
-    """A key that is held; what comes meanwhile is kept."""
+async def press(page, seconds, velocity=5):
+    """A key that is held; what comes meanwhile is kept. As JSON of a browser the velocity has no fraction."""
     begin, sequence = time.monotonic(), 0
     while time.monotonic() - begin < seconds:
         sequence += 1

@@ -194,6 +194,14 @@ def test_a_jog_that_the_machine_refuses_is_not_held():
     heard.under_test.end()
 
 
+def test_a_whole_number_is_a_velocity_too():
+    """JSON of a browser has 5 for 5.0, and a ROS message with it ends its process."""
+    heard = Heard()
+    heard.under_test.take({"type": "jog", "axis": "x", "velocity": 5, "sequence": 1, "time": 0})
+    [velocity] = heard.jogs
+    assert (velocity, type(velocity)) == (5.0, float)
+
+
 def test_each_message_is_passed_on_once():
     heard = Heard()
     heard.message(1, sent=0.0)

@@ -132,7 +132,7 @@ def jog_until_it_moves(page):
 
 @pytest.mark.parametrize("how", ["crash", "close"])
 def test_an_axis_stops_when_its_page_dies(browser, mill, how):
-    """Of the time until it begins 0.2 s are the patience of the axis."""
+    """Of the time until it begins 0.2 s are the patience of the axis; `bench web` measures it."""
     page = open_page(browser, mill.server.url, command=True)
     jog_until_it_moves(page)
     samples = []

@@ -149,8 +149,7 @@ class LiveFace(MachineFace):
     def note(self, cycle: int, text: str) -> None:
         self._graph.publish_event(Event(cycle, SOURCE, Severity.INFO, 0, text))
 
-    def jog(self, axis: str, velocity: float, *, user: str) -> None:
-        self.require_open(axis, "jog", {"velocity": velocity})
+    def _send_jog(self, axis: str, velocity: float, user: str) -> None:
         self._graph.jog(axis, velocity, NODE if user == NODE else f"{NODE}:{user}")
 
     async def run(self) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from abc import abstractmethod
 from collections.abc import Mapping
 from math import inf
 from types import SimpleNamespace
@@ -98,6 +99,14 @@ class MachineFace(Face):
             raise error_of(reply.error_id, reply.message, reply.values)
         return reply
 
+    def jog(self, axis: str, velocity: float, *, user: str) -> None:
+        self.require_open(axis, "jog", {"velocity": velocity})
+        self._send_jog(axis, velocity, user)
+
+    @abstractmethod
+    def _send_jog(self, axis: str, velocity: float, user: str) -> None:
+        """One message of a jog that is open to pages."""
+
     def require_open(self, unit: str, command: str, arguments: Mapping[str, Any]) -> None:
         """Raises CncError 26218 where the machine file closes the unit, or an axis of a trajectory, to pages."""
         closed = self._closed.get(unit, ())
@@ -184,8 +193,7 @@ class OfflineFace(MachineFace):
             self.step()
         return reply
 
-    def jog(self, axis: str, velocity: float, *, user: str) -> None:
-        self.require_open(axis, "jog", {"velocity": velocity})
+    def _send_jog(self, axis: str, velocity: float, user: str) -> None:
         self._sequence += 1
         message: Any = SimpleNamespace(
             header=SimpleNamespace(frame_id=user), sequence=self._sequence, valid=True, velocity=velocity

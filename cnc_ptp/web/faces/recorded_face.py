@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+from bisect import bisect_left, bisect_right
 from collections.abc import Mapping
 from math import inf
+from operator import attrgetter
 from typing import Any
 
 from cnc_ptp.client.link import Reply
@@ -21,6 +23,7 @@ from cnc_ptp.web.protocol import NOTHING
 
 STEP = 0.02
 """Seconds between two steps of the time that is played."""
+FIRST_CYCLE, CYCLE = attrgetter("first_cycle"), attrgetter("cycle")
 FASTEST = 100.0
 """Seconds of a recording in a second."""
 
@@ -39,6 +42,8 @@ class RecordedFace(Face):
         self._windows: dict[int, Blocks] = {0: file.first}
         self._time = self._told = 0.0
         self._speed = 0.0
+        self._shown: tuple[float, dict[str, Load], State] | None = None
+        """Time, programs and state of the last look: most pages of a recording stand."""
         self._turn = asyncio.Lock()
 
     def for_page(self) -> RecordedFace:
@@ -110,30 +115,38 @@ class RecordedFace(Face):
 
     def state(self) -> State:
         """Of the last block that has ended by now."""
+        return self._look()[1]
+
+    def loads(self) -> dict[str, Load]:
+        return self._look()[0]
+
+    def _look(self) -> tuple[dict[str, Load], State]:
+        if self._shown is None or self._shown[0] != self._time:
+            loads = self._loads_until(self._time / self.cycle_time)
+            self._shown = self._time, loads, self._state_with(loads)
+        return self._shown[1:]
+
+    def _state_with(self, loads: Mapping[str, Load]) -> State:
         blocks = {unit: block for unit in self.kinds if (block := self._block_at(unit)) is not None}
         states = unit_states(blocks)
-        for channel, load in self.loads().items():
+        for channel, load in loads.items():
             if channel in states:
                 states[channel]["program"] = load.path
         return states
 
     def _block_at(self, unit: str) -> CycleBlock | None:
-        cycle = round(self._time / self.cycle_time)
-        found = None
-        for block in self._windows.get(int(self._time / WINDOW), {}).get(unit, []):
-            if found is not None and block.first_cycle > cycle:
-                break
-            found = block
-        return found
-
-    def loads(self) -> dict[str, Load]:
-        return self._loads_until(self._time / self.cycle_time)
+        blocks = self._windows.get(int(self._time / WINDOW), {}).get(unit, [])
+        if not blocks:
+            return None
+        after = bisect_right(blocks, round(self._time / self.cycle_time), key=FIRST_CYCLE)
+        return blocks[max(0, after - 1)]
 
     def last_loads(self) -> dict[str, Load]:
         return self._loads_until(inf)
 
     def _loads_until(self, cycle: float) -> dict[str, Load]:
-        return {channel: load for at, channel, load in self.file.programs if at <= cycle}
+        until = bisect_right(self.file.programs, cycle, key=lambda program: program[0])
+        return {channel: load for _, channel, load in self.file.programs[:until]}
 
     def news(self) -> News:
         begin, end = self._told / self.cycle_time, self._time / self.cycle_time
@@ -151,7 +164,9 @@ class RecordedFace(Face):
             for block in found
             if begin <= block.first_cycle < end
         ]
-        return News([event for event in self.file.events if begin <= event.cycle < end], blocks=blocks)
+        events = self.file.events
+        told = slice(*(bisect_left(events, cycle, key=CYCLE) for cycle in (begin, end)))
+        return News(events[told], blocks=blocks)
 
     async def ask(self, unit: str, command: str, arguments: Mapping[str, Any], *, user: str) -> Reply:
         raise is_recording(f"{unit}: {command}")

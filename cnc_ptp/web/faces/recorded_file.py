@@ -102,7 +102,7 @@ class RecordedFile:
         names = ("cycle", "source", "severity", "error_id", "text", "line")
         columns = self._recording.columns("/events", *names)
         rows = zip(*(columns[name].tolist() for name in names), strict=True)
-        return [Event(*row) for row in rows]
+        return sorted((Event(*row) for row in rows), key=lambda event: event.cycle)
 
     def _read_programs(self) -> list[tuple[int, str, Load]]:
         """Cycle, channel, and each program that was loaded."""
@@ -111,11 +111,12 @@ class RecordedFile:
         names = ("cycle", "target", "command", "accepted", "arguments_json")
         columns = self._recording.columns("/commands", *names)
         rows = zip(*(columns[name].tolist() for name in names), strict=True)
-        return [
+        loaded = [
             (cycle, unit, load_of(json.loads(given)))
             for cycle, unit, command, ok, given in rows
             if command == "load" and ok
         ]
+        return sorted(loaded, key=lambda load: load[0])
 
     def close(self) -> None:
         self._recording.close()

@@ -1,0 +1,228 @@
+"""The web face on the mill of 8 processes in real time, with pages in headless Chromium: scopes, buttons, positions,
+ends of jogs. The browsers run at nice 19: people have them on another computer.
+"""
+
+from __future__ import annotations
+
+import os
+import random
+import re
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, field
+from math import nan
+from multiprocessing import get_context
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+import psutil
+
+from bench.figures import Effort, Figure, ShowProgress
+from bench.graph import missing_samples
+from bench.graph_run import process_seconds
+from bench.jobs import MACHINE, long_program
+from bench.plc import p99
+from bench.web_jogs import KEEP_PRESSES, End, Observer, Proxy, collect, killed, own_browser, released, stalled
+from cnc_ptp.recording.node_figures import LATENESS_P99
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "test" / "web_browser"))
+
+from web_browser_support import open_page, until, why_no_browser
+
+SIGNALS = [
+    *(f"{axis}.{field}" for axis in "xyz" for field in ("set_position", "following_error")),
+    "channel.path_velocity",
+    "s.actual_speed_rpm",
+]
+"""Eight, at 1 kHz."""
+PAGES = 2
+PRESSES, KILLED, STALLED = 100, 50, 50
+SEED = 20
+NICENESS = 19
+DISPLAYED = 10.0
+"""Seconds for which positions are counted."""
+SETTLING = 2.0
+LONGEST_START = 120.0
+"""Seconds until the graph runs, and until it has ended."""
+KEEP_VIEW = """(names) => {
+    const channels = names.map((name, i) => ({ name, graph: 1 + i % 4 }));
+    localStorage.setItem("scope-views", JSON.stringify({ bench: { channels, window: 2 } }));
+    location.hash = "scope";
+}"""
+COUNT_SAMPLES = """() => {
+    const take = app.connection.onBinary;
+    window.seen = { samples: 0, lost: 0 };
+    let next = -1;
+    app.connection.onBinary = (data) => {
+        const [, low, high, , count] = new Uint32Array(data, 0, 5);
+        const first = low + high * 2 ** 32;
+        if (next >= 0) seen.lost += Math.max(0, first - next);
+        seen.samples += count;
+        next = first + count;
+        take(data);
+    };
+}"""
+RUN_PROGRAM = """async (text) => {
+    await app.request("load", { channel: "channel", name: "rounds.nc", text });
+    await app.command("channel", "start", {});
+}"""
+COUNT_POSITIONS = """(ms) => new Promise((done) => {
+    let shown = 0;
+    const watch = new MutationObserver(() => { shown += 1; });
+    watch.observe(document.querySelector(".positions"), { subtree: true, childList: true, characterData: true });
+    const begin = performance.now();
+    setTimeout(() => { watch.disconnect(); done(1000 * shown / (performance.now() - begin)); }, ms);
+})"""
+
+
+@dataclass(slots=True)
+class WebRun:
+    """What was measured; times in ms."""
+
+    samples: int = 0
+    lost: int = 0
+    """Cycles of the scopes that have not come."""
+    core: float = nan
+    lateness_p99: float = nan
+    positions: float = nan
+    """A second, on a page."""
+    reactions: list[float] = field(default_factory=list)
+    ends: dict[str, list[End]] = field(default_factory=dict)
+    blocks_lost: float = nan
+    missing: int = 0
+
+
+def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
+    """All in one run of the graph."""
+    if reason := why_no_browser():
+        raise RuntimeError(reason)
+    show(f"{effort.graph_seconds:.0f} s of {PAGES} scopes, then {effort.scaled(PRESSES, least=2)} jogs and other ends")
+    os.environ["ROS_DOMAIN_ID"] = str(1 + os.getpid() % 100)
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+        run = pool.submit(measure, effort).result()
+    yield Figure(f"{PAGES} browsers with a scope of {len(SIGNALS)} signals at 1 kHz: samples", run.samples, "")
+    yield Figure("samples of the scopes lost", run.lost, "", goal=0.0, at_most=True)
+    lateness = "block lateness of the latest node meanwhile, p99"
+    yield Figure(lateness, run.lateness_p99, "ms", goal=10.0, at_most=True)
+    yield Figure("web meanwhile", run.core, "cores", goal=0.35, at_most=True)
+    yield Figure("blocks lost in the whole run", run.blocks_lost, "", goal=0.0, at_most=True)
+    yield Figure("samples missing in the recording", run.missing, "", goal=0.0, at_most=True)
+    yield Figure("positions that a page shows", run.positions, "1/s", goal=20.0)
+    yield Figure("jog button to first changed setpoint, median", median(run.reactions), "ms")
+    yield Figure("jog button to first changed setpoint, p99", p99(run.reactions), "ms", goal=60.0, at_most=True)
+    for kind, ends in run.ends.items():
+        begins = [end.begins for end in ends]
+        yield Figure(f"jog, {kind}: times", len(ends), "")
+        yield Figure(f"jog, {kind}: stop begins after, median", median(begins), "ms")
+        yield Figure(f"jog, {kind}: stop begins after, largest", max(begins), "ms", goal=250.0, at_most=True)
+        yield Figure(f"jog, {kind}: stands after, largest", max(end.stands for end in ends), "ms")
+        again = sum(end.goes_on > 0.0 for end in ends)
+        yield Figure(f"jog, {kind}: started again", again, "times", goal=0.0, at_most=True)
+
+
+def measure(effort: Effort) -> WebRun:
+    """Starts and ends the graph of the mill with its pages."""
+    import rclpy
+
+    from cnc_ptp.nodes import process
+
+    port = free_port()
+    with tempfile.TemporaryDirectory() as folder:
+        record, told = str(Path(folder) / "run.mcap"), Path(folder) / "told"
+        command = [sys.executable, "-m", "cnc_ptp", "run", MACHINE, "--stay", "--web", str(port), "--record", record]
+        with told.open("w") as output:
+            graph = subprocess.Popen(command, stdout=output, stderr=subprocess.STDOUT, cwd=folder)
+        try:
+            wait_for_pages(graph, told)
+            os.nice(NICENESS)
+            process.initialise()
+            run = session(port, psutil.Process(graph.pid), effort)
+        except Exception as error:
+            raise RuntimeError(f"{error}; the graph has said: {told.read_text()}") from error
+        finally:
+            graph.terminate()
+            graph.wait(LONGEST_START)
+            rclpy.try_shutdown()
+        if found := re.search(r"lost (\d+), computed twice", told.read_text()):
+            run.blocks_lost = int(found[1])
+        run.missing = missing_samples(record)
+    return run
+
+
+def free_port() -> int:
+    with socket.socket() as found:
+        found.bind(("127.0.0.1", 0))
+        return int(found.getsockname()[1])
+
+
+def wait_for_pages(graph: subprocess.Popen[bytes], told: Path) -> None:
+    """Its server has told its address."""
+    deadline = time.monotonic() + LONGEST_START
+    while "pages: " not in told.read_text():
+        if graph.poll() is not None or time.monotonic() > deadline:
+            raise RuntimeError("no pages")
+        time.sleep(0.1)
+
+
+def session(port: int, graph: psutil.Process, effort: Effort) -> WebRun:
+    from playwright.sync_api import sync_playwright
+
+    server = next(child for child in graph.children() if "--listening" in child.cmdline())
+    address, run = f"http://127.0.0.1:{port}/", WebRun()
+    held = random.Random(SEED)
+    with Observer() as observer, Proxy(port) as proxy, sync_playwright() as playwright:
+        scopes(playwright, address, server, effort.graph_seconds, run)
+        with own_browser(playwright) as (browser, _):
+            page = open_page(browser, address, command=True)
+            run.positions = shown_positions(page, min(DISPLAYED, effort.graph_seconds))
+            page.evaluate(KEEP_PRESSES)
+            count = effort.scaled(PRESSES, least=2)
+            run.ends["key up"] = collect(count, lambda: released(page, observer, held, run.reactions))
+        count = effort.scaled(KILLED)
+        run.ends["browser killed"] = collect(count, lambda: killed(playwright, address, observer, held))
+        with own_browser(playwright) as (browser, _):
+            page = open_page(browser, proxy.address, command=True)
+            count = effort.scaled(STALLED)
+            run.ends["socket stalled"] = collect(count, lambda: stalled(page, proxy, observer, held))
+    return run
+
+
+def scopes(playwright: Any, address: str, server: psutil.Process, seconds: float, run: WebRun) -> None:
+    """Two browsers look at eight signals of a program that runs."""
+    with own_browser(playwright) as (first, _), own_browser(playwright) as (second, _):
+        pages = [open_page(first, address, command=True), open_page(second, address)]
+        for page in pages:
+            page.evaluate(KEEP_VIEW, SIGNALS)
+            page.select_option("[aria-label='Saved views']", "bench")
+            page.wait_for_selector(f".channels >> text={SIGNALS[-1]}")
+        pages[0].evaluate(RUN_PROGRAM, long_program(seconds + 5.0 * SETTLING))
+        until(pages[0], "app.store.units.channel.state === 'running'")
+        for page in pages:
+            page.evaluate(COUNT_SAMPLES)
+        time.sleep(SETTLING)
+        begin, used = time.monotonic(), process_seconds(server)
+        pages[0].wait_for_timeout(1000.0 * seconds)
+        run.core = (process_seconds(server) - used) / (time.monotonic() - begin)
+        for page in pages:
+            seen = page.evaluate("window.seen")
+            run.samples, run.lost = run.samples + seen["samples"], run.lost + seen["lost"]
+        nodes = pages[0].evaluate("[...app.store.nodes.values()].map((node) => node.values)")
+        run.lateness_p99 = max(float(values[LATENESS_P99]) for values in nodes if LATENESS_P99 in values)
+        pages[0].evaluate("() => app.command('channel', 'reset', {})")
+        until(pages[0], "!app.store.units.channel.active")
+
+
+def shown_positions(page: Any, seconds: float) -> float:
+    """Positions a second on the page while x moves."""
+    page.evaluate("() => void app.command('x', 'move_absolute', { target: 200, velocity: 5 })")
+    until(page, "app.store.units.x.set_velocity !== 0")
+    shown = float(page.evaluate(COUNT_POSITIONS, 1000.0 * seconds))
+    page.evaluate("() => void app.command('x', 'halt', {})")
+    until(page, "app.store.units.x.set_velocity === 0")
+    return shown
