@@ -187,7 +187,7 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "couple": {"master": TEXT, "factor_num": OPTIONAL_NUMBER, "factor_den": OPTIONAL_NUMBER, **OWNER},
         "coupling_answer": {"granted": SWITCH, "reason": TEXT},
         "decouple": {**OWNER},
-        "follow_path": {**FOR},
+        "follow_path": SOURCE,
         "leave_path": {"travel": OPTIONAL_NUMBER, **FOR},
         "set_feedforward": FEEDFORWARD,
         "reset_feedforward": {},

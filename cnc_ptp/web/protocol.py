@@ -17,6 +17,8 @@ LARGEST_MESSAGE = 1 << 20
 """Bytes of a message of a page."""
 KINDS: Mapping[str, type | tuple[type, ...]] = {"text": str, "number": (int, float), "object": dict, "list": list}
 NOTHING = "nothing was done"
+SHOWN = 40
+"""Characters of a wrong message that an error shows."""
 
 Message = dict[str, Any]
 
@@ -25,19 +27,23 @@ def read_message(text: str) -> Message:
     """A message of a page: a JSON object with a type. Raises CncError 26233."""
     message = read_body(text)
     if not isinstance(message.get("type"), str):
-        raise CncError(BAD_MESSAGE, f"message {text[:40]!r} has no type", NOTHING)
+        raise CncError(BAD_MESSAGE, f"message {text[:SHOWN]!r} has no type", NOTHING)
     return message
 
 
-def read_body(text: str) -> Message:
+def read_body(text: str | bytes) -> Message:
     """A JSON object. Raises CncError 26233."""
     try:
         message = json.loads(text, parse_constant=refuse_constant)
     except (ValueError, RecursionError):
-        raise CncError(BAD_MESSAGE, f"message {text[:40]!r} is not JSON", NOTHING) from None
+        raise CncError(BAD_MESSAGE, f"message {begin_of(text)!r} is not JSON", NOTHING) from None
     if not isinstance(message, dict):
-        raise CncError(BAD_MESSAGE, f"message {text[:40]!r} is not an object", NOTHING)
+        raise CncError(BAD_MESSAGE, f"message {begin_of(text)!r} is not an object", NOTHING)
     return message
+
+
+def begin_of(text: str | bytes) -> str:
+    return (text if isinstance(text, str) else text.decode(errors="replace"))[:SHOWN]
 
 
 def refuse_constant(name: str) -> None:

@@ -75,7 +75,7 @@ class Server:
 
     async def _log_in(self, request: web.Request) -> web.StreamResponse:
         """{"user": …, "password": …}"""
-        message = {"type": "login", **read_body(await request.text())}
+        message = {"type": "login", **read_body(await request.read())}
         user, password = field(message, "user", "text"), field(message, "password", "text")
         key = await self.access.log_in(user, password, request.remote or "")
         response = web.json_response({"user": user})

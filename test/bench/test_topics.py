@@ -21,7 +21,6 @@ from bench import (
     spindles,
     streaming,
     sweep,
-    web,
     what_if,
 )
 from bench.figures import Effort
@@ -84,19 +83,6 @@ def test_a_plc_beside_the_graph(monkeypatch: pytest.MonkeyPatch) -> None:
     assert 0.0 < figures["override messages per second and topic"].value <= 1000.0
     assert figures["blocks lost"].value == figures["samples missing in the recording"].value == 0.0
     assert figures["topics whose newest value has won"].value == 4
-
-
-def test_pages_beside_the_graph(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Two scopes, two jogs by a button, an end of each other kind; how fast, is not judged."""
-    if reason := web.why_no_browser():
-        pytest.skip(reason)
-    monkeypatch.setenv("ROS_DOMAIN_ID", "0")  # it takes a domain of its own, which ends with the test
-    figures = {figure.name: figure for figure in web.figures(SMALLEST, print)}
-    assert figures["2 browsers with a scope of 8 signals at 1 kHz: samples"].value >= 1000.0
-    assert figures["samples missing in the recording"].value == 0.0
-    for kind, times in (("key up", 2), ("browser killed", 1), ("socket stalled", 1)):
-        assert figures[f"jog, {kind}: times"].value == times
-        assert figures[f"jog, {kind}: started again"].value == 0
 
 
 def test_figures_of_a_watched_run() -> None:

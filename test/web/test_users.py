@@ -178,6 +178,17 @@ def test_a_password_of_half_characters(users):
     run(story, users=users)
 
 
+@pytest.mark.parametrize("content", [b"\xff\xfe", b'{"user": "\xff"}', b"{"])
+def test_a_login_that_is_no_text(users, content):
+    async def story(here):
+        answer = await here.client.post("/api/login", data=content)
+        shown = content.decode(errors="replace")
+        assert answer.status == 400
+        assert (await answer.json())["text"] == f"message {shown!r} is not JSON; nothing was done"
+
+    run(story, users=users)
+
+
 def test_without_users_a_page_is_logged_in_again():
     """The server has begun again, or its cookie was lost: the page asks for its session, and goes on."""
 
