@@ -14,6 +14,7 @@ from typing import Any
 
 import rclpy
 from rclpy.context import Context
+from rclpy.executors import Executor
 from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
 from rclpy.publisher import Publisher
@@ -132,7 +133,7 @@ def is_read(node: Node, publisher: Publisher[Any], names: Set[str]) -> bool:
     return names <= readers and publisher.get_subscription_count() >= len(names)
 
 
-def take_nodes(executor: EventsExecutor, nodes: Sequence[Node]) -> None:
+def take_nodes(executor: Executor, nodes: Sequence[Node]) -> None:
     """Adds nodes. Each action has a timer, and rclpy prints that eight timers are many: that is not for the user."""
     with redirect_stdout(StringIO()):
         for node in nodes:

@@ -138,7 +138,7 @@ class RecordReader:
 
     def footer(self, record: RawRecord) -> Footer:
         """The last record of a closed file."""
-        footer = self.parse(Footer.read, record)
+        footer: Footer = self.parse(Footer.read, record)
         if footer.summary_start > record.offset:
             raise self.corrupt(
                 record.offset, f"the footer lies before the summary, which begins at {footer.summary_start}"
