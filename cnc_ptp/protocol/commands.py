@@ -188,7 +188,7 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "coupling_answer": {"granted": SWITCH, "reason": TEXT},
         "decouple": {**OWNER},
         "follow_path": SOURCE,
-        "leave_path": {"travel": OPTIONAL_NUMBER, **FOR},
+        "leave_path": {"travel": OPTIONAL_NUMBER, **SOURCE},
         "set_feedforward": FEEDFORWARD,
         "reset_feedforward": {},
         "reset": {},

@@ -29,7 +29,7 @@ from cnc_ptp.state.decoding import Decoder
 from cnc_ptp.state.encoding import Encoder, LongLists
 from cnc_ptp.state.faults import damaged, other_version
 from cnc_ptp.state.roots import Roots
-from cnc_ptp.state.rows import ROW, is_part
+from cnc_ptp.state.rows import ROW, is_part, require_lists
 
 MAGIC: Final = b"CNCS"
 LAYOUT: Final = 1
@@ -78,6 +78,7 @@ class StateStore:
         if not isinstance(content, list) or len(content) != 4 or type(content[0]) is not int:
             raise damaged("it is no list of cycle, root, shapes and rows")
         next_cycle, root, shapes, rows = content
+        require_lists(rows, shapes)
         if not is_part(root, ROW, len(rows)):
             raise damaged("its root is no row")
         with paused_collector():  # a sixth of the time

@@ -45,10 +45,15 @@ FORMS: Final = {
 PLAIN: Final = frozenset((type(None), bool, int, float, str))
 
 
-def check_rows(rows: Any, shapes: Any) -> None:
-    """Raises CncError 26151 for the first row or shape that no encoder makes."""
+def require_lists(rows: Any, shapes: Any) -> None:
+    """Raises CncError 26151."""
     if not isinstance(rows, list) or not isinstance(shapes, list):
         raise damaged("it has no lists of rows and shapes")
+
+
+def check_rows(rows: Any, shapes: Any) -> None:
+    """Raises CncError 26151 for the first row or shape that no encoder makes."""
+    require_lists(rows, shapes)
     for shape in shapes:
         if not is_shape(shape):
             raise damaged(f"a shape is {shape!r:.60}")

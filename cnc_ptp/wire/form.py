@@ -74,7 +74,7 @@ class Form:
     def _texts(self, texts: list[str], lengths: dict[int, int]) -> list[Any]:
         values: list[Any] = []
         for text in texts:
-            content = text.encode() + NO_TEXT
+            content = text.encode(errors="replace") + NO_TEXT
             lengths[self._values + 1] = len(content)
             self._number("I", 1)
             self._codes.append(f"{len(content)}s")

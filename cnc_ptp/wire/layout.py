@@ -107,11 +107,14 @@ class _Writer:
             self.message(type_name, value, f"{name}.")
 
     def text(self, value: str) -> None:
-        """Part by part: the text of a program may be long, and needs no second copy."""
+        """Part by part: the text of a program may be long, and needs no second copy.
+
+        What is no character (a name of a file that is no UTF-8) becomes a question mark.
+        """
         self.numbers("I", [0])
         begin = len(self.data)
         for part in range(0, len(value), TEXT_PART):
-            self.data += value[part : part + TEXT_PART].encode()
+            self.data += value[part : part + TEXT_PART].encode(errors="replace")
         self.data += b"\0"
         struct.pack_into("<I", self.data, begin - 4, len(self.data) - begin)
 

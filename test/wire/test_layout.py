@@ -64,6 +64,13 @@ def test_any_text_is_read_by_the_library(cycle, text, source, line):
     same(decode(schema, encode(schema, event)), event, schema)
 
 
+def test_what_is_no_character_becomes_a_question_mark():
+    """A file whose name is no UTF-8, a goal of a client in Python."""
+    schema = load_schema("cnc_ptp/msg/Event")
+    event = Event(0, "x", 2, 23001, "part\udcff.nc", 1)
+    assert decode(schema, encode(schema, event)).text == "part?.nc"
+
+
 @pytest.mark.parametrize("type_name", STATE_TYPES)
 def test_many_states_at_once_are_read_by_the_library(type_name):
     schema = load_schema(f"cnc_ptp/msg/{type_name}")
