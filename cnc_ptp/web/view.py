@@ -56,6 +56,7 @@ class View:
     def tell(self) -> bool:
         """What has come since the last time, to all pages; whether a channel has another program."""
         face = self.face
+        units = face.state()  # before the news: a program that it names has its command among them
         news = face.news()
         for event in news.events:
             self._tell_event(event, face.cycle_time)
@@ -71,7 +72,7 @@ class View:
             self.to_all({"type": "diagnostics", "nodes": [*news.diagnostics]})
         state = {
             unit: {**fields, **self._switches.fields.get(unit, {}), **self.targets.fields(unit)}
-            for unit, fields in face.state().items()
+            for unit, fields in units.items()
         }
         changes = difference(state, self._state)
         self._state = state

@@ -449,7 +449,7 @@ def test_motions_in_an_event_loop_are_those_of_one_after_the_other() -> None:
 
 def test_a_signal_acts_between_two_blocks(m: Machine) -> None:
     """Ctrl-C in a long wait; the machine is whole, and can go on."""
-    job = m.x.move_absolute(300, velocity=0.5)
+    job = m.x.move_absolute(300, velocity=0.05)
     threading.Timer(0.3, signal.raise_signal, [signal.SIGINT]).start()
     with pytest.raises(KeyboardInterrupt):
         job.wait()

@@ -423,7 +423,7 @@ def test_texts_of_programs_are_texts():
         assert (await page.ask("load", name="part.nc", text=text))["ok"]
         await page.wait_for("program")
         answer = await here.client.get("/api/programs/part.nc")
-        assert answer.headers["Content-Type"] == "text/plain; charset=utf-8"
+        assert answer.headers["Content-Type"] == "text/plain; charset=utf-8", await answer.text()
         assert await answer.text() == text
 
     run(story)

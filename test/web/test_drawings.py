@@ -38,7 +38,7 @@ def test_a_drawing_that_is_no_longer_wanted_ends_with_the_next_look(face):
 
 async def begun(office):
     """The process that draws is at work."""
-    while not (office._pool and office._pool._pending_work_items):
+    while not (office._orders and office._pool and office._pool._pending_work_items):
         await asyncio.sleep(0.01)
 
 
@@ -61,8 +61,8 @@ def test_a_newer_program_of_a_channel_ends_the_drawing_of_an_older_one(face, wai
         for number, refused in enumerate(refusals):
             text = f"backplot of old{number}.nc: the channel has another program; nothing is shown"
             assert (refused.number, refused.message) == (26253, text)
-        points = HEAD.unpack_from(await orders[0].task)[1]
-        assert points < MOST_POINTS
+        drawn = await orders[0].task
+        assert drawn == b"" or HEAD.unpack_from(drawn)[1] < MOST_POINTS
         office.close()
 
     asyncio.run(story())

@@ -194,12 +194,12 @@ def test_seeks_while_it_plays_read_one_after_the_other(recording):
     async def story():
         face = recorded_face(recording)
         running = asyncio.create_task(face.run())
-        face.play(5.0)
+        face.play(1.0)
         for _ in range(5):
             face.file._windows.clear()
             face._windows.clear()
             await asyncio.gather(*(face.seek(time) for time in (0.2, 1.4, 0.7)))
-            assert face.time == pytest.approx(0.7, abs=0.2)
+            assert 0.7 <= face.time < 1.4
             assert all(block.first_cycle * 1e-3 < 2.0 for block in face._windows[0]["x"])
         running.cancel()
         face.close()

@@ -79,7 +79,7 @@ class DrawingOffice:
                 self._cancel(drawing.channel)
             number = next(self._numbers)
             self._orders[key] = Order(number, drawing.channel, asyncio.create_task(self._draw(drawing, number)))
-            for old in [each for each, order in self._orders.items() if order.task.done()][:-KEPT]:
+            for old in [each for each, order in self._orders.items() if order.task.done()][: 1 - KEPT]:
                 del self._orders[old]
         order = self._orders[key]
         try:
