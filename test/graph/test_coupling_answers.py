@@ -42,6 +42,9 @@ class Bridge:
     def input(self, command):
         self.unit.input(command)
 
+    def why_closed(self, _command, _source):
+        """No unit is closed to anybody."""
+
     def call(self, name, request, header):
         """What an executor does with a request."""
         service, callback = self.services[name]
