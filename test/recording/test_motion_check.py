@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import json
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -253,6 +254,28 @@ def test_an_abrupt_stop_is_told(tmp_path: Path) -> None:
     (told,) = result.told
     assert (told.unit, told.what) == ("x", "deceleration of an abrupt stop")
     assert (told.value, told.limit) == (-2800.0, 2400.0)
+
+
+def test_a_flying_saw_that_leaves_a_path(tmp_path: Path) -> None:
+    """Its velocity ends on the jerk of the axis while the circle continues: together they are above it."""
+    machine = tmp_path / "conveyor.yaml"
+    z = '          "2": {bezeichnung: Z, log_achs_nr: 3}\n'
+    assert z in MILL.read_text()
+    machine.write_text(MILL.read_text().replace("achs_anzahl: 3", "achs_anzahl: 2").replace(z, ""))
+    shutil.copytree(MILL.parent / "tools", tmp_path / "tools")
+    scenario = """
+- {at: 0.0, to: channel, do: mdi, text: "G01 X20 Y0 F6000\\nG04 X1\\nG02 X20 Y0 I-20 J0 F3000\\nM30"}
+- {at: 0.0, to: z, do: jog, velocity: 8}
+- {at: 0.4, to: x, do: couple_flying_saw, master: z, factor: 1, master_position: 8, slave_position: 3}
+- {at: 2.0, to: x, do: decouple}
+- {at: 2.5, to: z, do: stop}
+"""
+    run = make_run(tmp_path / "run.mcap", scenario, machine)
+    with OpenRecording(run) as recording:
+        inputs = read_inputs(recording)
+    assert check_motion(inputs).violations == []
+    jerk = np.diff(inputs.axes["x"]["set_acceleration"]) / 1e-3
+    assert np.abs(jerk[2000:2100]).max() > inputs.machine.axes["x"].jerk
 
 
 # closed forms

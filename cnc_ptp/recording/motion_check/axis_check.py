@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import chain
 from math import inf
 
 import numpy as np
@@ -53,7 +54,9 @@ class AxisCheck:
         self.on_path = and_next(synchronous & ~coupled)
         self.external: Mask = since((bits & B.EXT_SETPOINT) != 0, self.resting)
         adds = (bits & (B.COMPENSATING | B.EXT_SETPOINT)) != 0
-        self.added: Mask = since(adds, self.resting) | self.stretches.mask(self.orders, frozenset(ADDED))
+        self.additions: list[list[Order]] = [self._given(name) for name in ADDED] + [self._decoupled_on_path()]
+        """Commands for a second motion on top of another one, by kind."""
+        self.added: Mask = since(adds, self.resting) | self.stretches.mask(chain(*self.additions))
         self.found = Findings(name, self.cycles, inputs.cycle_time, result)
         self.laws = self._own_laws()
 
@@ -97,7 +100,7 @@ class AxisCheck:
 
     def _take_orders(self) -> Numbers:
         """Limits that come with commands; returns those of falling |v| in rows of abrupt stops, inf elsewhere (n,)."""
-        laws, extra = self.laws, {name: self._additions(name) for name in ADDED}
+        laws, extra = self.laws, [self._limits_of(orders) for orders in self.additions]
         abrupt = laws.reduction.copy()
         for order in self.orders:
             rows = self.stretches.of(order.cycle)
@@ -109,9 +112,9 @@ class AxisCheck:
             if order.command == "begin_trajectory":
                 self._take_trajectory(rows, order)
         raised = abrupt > laws.reduction
-        calm = np.where(raised, laws.reduction + sum(acceleration for acceleration, _ in extra.values()), inf)
+        calm = np.where(raised, laws.reduction + sum(acceleration for acceleration, _ in extra), inf)
         laws.reduction = np.maximum(laws.reduction, abrupt)
-        for acceleration, jerk in extra.values():
+        for acceleration, jerk in extra:
             laws.growth, laws.reduction = laws.growth + acceleration, laws.reduction + acceleration
             laws.jerk = laws.jerk + jerk
         return calm
@@ -125,16 +128,23 @@ class AxisCheck:
         jerk = min(order.number("jerk"), most / self.inputs.cycle_time)
         self.laws.jerk[rows] = np.maximum(self.laws.jerk[rows], jerk)
 
-    def _additions(self, command: str) -> tuple[Numbers, Numbers]:
+    def _given(self, command: str) -> list[Order]:
+        return [order for order in self.orders if order.command == command]
+
+    def _decoupled_on_path(self) -> list[Order]:
+        """What a master has added to a path ends on the axis' own ramp, while the path continues."""
+        rows = [(order, self.stretches.row(order.cycle)) for order in self._given("decouple")]
+        return [order for order, row in rows if self.on_path[row : row + 2].any()]
+
+    def _limits_of(self, orders: Sequence[Order]) -> tuple[Numbers, Numbers]:
         """Acceleration and jerk of a second motion with its own limits or those of the axis, 0 without one."""
         acceleration, jerk = np.zeros(len(self.cycles)), np.zeros(len(self.cycles))
-        for order in self.orders:
-            if order.command == command:
-                rows = self.stretches.of(order.cycle)
-                up, down = order.number("acceleration"), order.number("deceleration")
-                asked = np.maximum(up or self.laws.growth[rows], down or self.laws.reduction[rows])
-                acceleration[rows] = np.maximum(acceleration[rows], asked)
-                jerk[rows] = np.maximum(jerk[rows], order.number("jerk") or self.laws.jerk[rows])
+        for order in orders:
+            rows = self.stretches.of(order.cycle)
+            up, down = order.number("acceleration"), order.number("deceleration")
+            asked = np.maximum(up or self.laws.growth[rows], down or self.laws.reduction[rows])
+            acceleration[rows] = np.maximum(acceleration[rows], asked)
+            jerk[rows] = np.maximum(jerk[rows], order.number("jerk") or self.laws.jerk[rows])
         return acceleration, jerk
 
     def _take_trajectory(self, rows: slice, order: Order) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -89,10 +89,9 @@ class Stretches:
         end = int(self._rests[place]) + 1 if place < len(self._rests) else len(self._cycles)
         return slice(begin, end)
 
-    def mask(self, orders: Sequence[Order], commands: frozenset[str]) -> Mask:
+    def mask(self, orders: Iterable[Order]) -> Mask:
         """Rows of the stretches of these commands."""
         rows = np.zeros(len(self._cycles), dtype=bool)
         for order in orders:
-            if order.command in commands:
-                rows[self.of(order.cycle)] = True
+            rows[self.of(order.cycle)] = True
         return rows
