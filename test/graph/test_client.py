@@ -171,10 +171,14 @@ def test_bad_values_are_refused_once(client):
         (250.0, "percent = 250.0 is not within 0 ... 100 (P-AXIS-00109, at most 100)"),
     ):
         before = len(client.records)
+
+        def refusals(before=before):
+            return [record for record in client.records[before:] if record.target == "x"]
+
         client.override("x", value)
+        client.spin_until(refusals, "the refusal")
         client.override("x", value)
-        refusals = [record for record in client.records[before:] if record.target == "x"]
-        assert [record.message for record in refusals] == [f"axis x: set_override refused: {text}; nothing was changed"]
+        assert [record.message for record in refusals()] == [f"axis x: set_override refused: {text}; nothing was changed"]
         assert client.blocks["x"][-1].override_percent[-1] == 100.0
     client.override("x", 100.0)
 
