@@ -125,6 +125,10 @@ class Observer:
                 raise TimeoutError(f"{what}: not within {patience:g} s")
             time.sleep(LOOK_PERIOD)
 
+    def wait_for_rest(self, moment: int) -> None:
+        """Until a block that was published after a moment (ns) ends at rest: this process may lag behind."""
+        self.wait("a jog ends", lambda: bool(self.since(moment)) and self.speed == 0.0)
+
     def first_motion(self, moment: int) -> float:
         """Milliseconds from a moment at which the axis stands to the publication of the first block that moves."""
         return next(1e-6 * (block.at - moment) for block in self.since(moment) if np.any(block.speeds > ZERO))
@@ -228,7 +232,7 @@ def jog(page: Any, observer: Observer, held: random.Random) -> None:
 
 def ended(observer: Observer, moment: int) -> End | None:
     """Once the axis has stood for a while."""
-    observer.wait("a jog ends", lambda: observer.speed == 0.0)
+    observer.wait_for_rest(moment)
     time.sleep(SETTLING)
     return observer.end_after(moment)
 
@@ -271,7 +275,7 @@ def stalled(page: Any, proxy: Proxy, observer: Observer, held: random.Random) ->
     jog(page, observer, held)
     moment = time.time_ns()
     proxy.stall(True)
-    observer.wait("a jog ends", lambda: observer.speed == 0.0)
+    observer.wait_for_rest(moment)
     time.sleep(STALL)
     proxy.stall(False)
     end = ended(observer, moment)

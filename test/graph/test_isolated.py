@@ -84,7 +84,7 @@ async def move_by_page(port):
 
 def test_nobody_joins_and_the_doors_are_open(isolated, ros_domain):
     running, port, recording = isolated
-    shared = sorted(os.listdir("/dev/shm"))
+    shared = {*os.listdir("/dev/shm")}
     processes = [psutil.Process(running.process.pid), *psutil.Process(running.process.pid).children(True)]
     networks = {os.readlink(f"/proc/{process.pid}/ns/net") for process in processes}
     assert len(networks) == 1
@@ -108,7 +108,7 @@ def test_nobody_joins_and_the_doors_are_open(isolated, ros_domain):
     running.process.send_signal(signal.SIGINT)
     running.finish(0)
     assert not [process for process in processes if process.is_running() and process.status() != psutil.STATUS_ZOMBIE]
-    assert sorted(os.listdir("/dev/shm")) == shared
+    assert {*os.listdir("/dev/shm")} <= shared  # Fast DDS may clear away what was left before
     with socket.socket(socket.AF_UNIX) as claim, socket.socket() as pages:
         claim.bind(claim_name(""))
         pages.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
