@@ -2,6 +2,7 @@
 
 import asyncio
 import itertools
+import mmap
 import os
 import subprocess
 import sys
@@ -145,7 +146,12 @@ def memory_at(monkeypatch, *held):
 def test_a_kind_that_leaks_is_found(monkeypatch, tmp_path):
     monkeypatch.setattr(engine, "LEAST_JUDGED", 100)
     kept = []
-    verdict = run(kind_of(lambda given: kept.append(os.urandom(1 << 19))), SEED, 100, tmp_path)
+
+    def leak(_given):
+        kept.append(mmap.mmap(-1, 1 << 19))  # memory that was not in use before, whatever this process has freed
+        kept[-1].write(b"x" * (1 << 19))
+
+    verdict = run(kind_of(leak), SEED, 100, tmp_path)
     (finding,) = verdict.findings
     assert (verdict.undocumented, finding.first, finding.number, finding.input) == (1, 0, 99, "all of these")
     assert finding.reason.startswith("memory grows: ")

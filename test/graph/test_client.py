@@ -178,7 +178,9 @@ def test_bad_values_are_refused_once(client):
         client.override("x", value)
         client.spin_until(refusals, "the refusal")
         client.override("x", value)
-        assert [record.message for record in refusals()] == [f"axis x: set_override refused: {text}; nothing was changed"]
+        assert [record.message for record in refusals()] == [
+            f"axis x: set_override refused: {text}; nothing was changed"
+        ]
         assert client.blocks["x"][-1].override_percent[-1] == 100.0
     client.override("x", 100.0)
 
