@@ -38,7 +38,7 @@ class JogSender:
         self._sequence += 1
         self._sent_at = time.monotonic()
         self.velocity = velocity
-        message = msg.Jog(sequence=self._sequence, valid=True, velocity=float(velocity))
+        message = msg.Jog(sequence=self._sequence, valid=True, velocity=velocity)
         message.header.frame_id = self._node.get_name()
         self._publisher.publish(message)
 

@@ -108,7 +108,7 @@ class WebLink(GraphLink):
     def jog(self, axis: str, velocity: float, client: str) -> None:
         """One message, at once."""
         self._jog_number += 1
-        message = msg.Jog(sequence=self._jog_number, valid=True, velocity=float(velocity))
+        message = msg.Jog(sequence=self._jog_number, valid=True, velocity=velocity)
         message.header.frame_id = client
         self._jog_publishers[axis].publish(message)
 

@@ -79,7 +79,8 @@ class DrawingOffice:
                 self._cancel(drawing.channel)
             number = next(self._numbers)
             self._orders[key] = Order(number, drawing.channel, asyncio.create_task(self._draw(drawing, number)))
-            for old in [each for each, order in self._orders.items() if order.task.done()][: 1 - KEPT]:
+            drawn_before = [each for each, order in self._orders.items() if order.task.done()]
+            for old in drawn_before[: 1 - KEPT]:  # the new one is kept besides
                 del self._orders[old]
         order = self._orders[key]
         try:
