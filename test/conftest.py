@@ -9,6 +9,8 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 HERE = Path(__file__).parent
+IN_REAL_TIME = ("graph", "web", "web_browser")
+"""Folders whose tests wait for processes and pages: one that fails has a second attempt, which the summary lists (RERUN)."""
 MOTION = pytest.StashKey[list[str]]()
 """What was checked of the motion of recordings, a line for each process."""
 sys.path[:0] = [str(HERE / "support"), str(HERE.parent)]
@@ -86,9 +88,12 @@ def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> Non
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Tests that put something else in place of a part of the kernel need the interpreted one."""
+    """Marks tests in real time, and skips those that put something else in place of a part of a compiled kernel."""
     from cnc_ptp import KERNEL
 
+    for item in items:
+        if item.path.relative_to(HERE).parts[0] in IN_REAL_TIME:
+            item.add_marker(pytest.mark.flaky(reruns=1))
     if not KERNEL.interpreted_because:
         skip = pytest.mark.skip(reason="needs the interpreted kernel: CNC_PTP_PURE=1 pytest -m interpreted")
         for item in items:

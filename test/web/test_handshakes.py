@@ -37,6 +37,13 @@ async def begin(page, text):
     assert started["ok"], started
 
 
+async def next_block(here):
+    """The PLC has seen the last block then: it knows what has been withdrawn."""
+    time = here.hub.face.time
+    while here.hub.face.time == time:
+        await asyncio.sleep(0.002)
+
+
 async def first_motion(page):
     """The first cycle in which x is not where it was; all cycles before it have come."""
     before = None
@@ -107,6 +114,7 @@ def test_a_reset_withdraws_what_waits(machine, name):
         assert (await page.command("channel", "reset"))["ok"]
         done = {"type": "handshake_done", "id": request["id"]}
         assert await page.wait_for("handshake_done") == await newcomer.wait_for("handshake_done") == done
+        await next_block(here)
         refused = await page.command("plc", "acknowledge", id=request["id"])
         text = f"plc plc: acknowledge refused: no request {request['id']} waits; nothing was changed. Waiting: none"
         assert (refused["number"], refused["text"]) == (22013, text)

@@ -25,9 +25,10 @@ def test_no_sample_is_lost_and_peaks_are_measured(look):
 
 def test_an_edge_holds_the_picture_with_what_was_before(look):
     page = look("scope")
-    page.select_option("label:text-is('Mode') + select", "single")
     page.fill("label:text-is('Level') + input", "5")
     page.press("label:text-is('Level') + input", "Enter")
+    page.select_option("label:text-is('Mode') + select", "single")
+    page.wait_for_selector("text=Frozen")
     page.click("button:text-is('Arm')")
     page.wait_for_selector("text=Frozen")
     page.fill("[data-cursor=A]", "-0.001")
