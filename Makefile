@@ -103,11 +103,12 @@ lock: $(AUDIT)/.tools
 
 # Of the vulnerabilities only those of locked versions count; licences are those of what is installed.
 audit: setup $(AUDIT)/.tools
-	$(AUDIT)/bin/pip-audit --requirement requirements.lock --require-hashes --disable-pip
 	@mkdir -p build
 	$(AUDIT)/bin/pip-licenses --python $(BIN)/python --format markdown --order license --output-file build/licences.md \
 	  --partial-match --fail-on "AGPL;SSPL;Affero"
 	@echo "Licences by package: build/licences.md"
+	-$(AUDIT)/bin/pip-audit --requirement requirements.lock --require-hashes --disable-pip --format json --output build/audit.json
+	$(BIN)/python tools/audit_result.py build/audit.json
 
 sbom: $(AUDIT)/.tools
 	@mkdir -p build
