@@ -114,13 +114,24 @@ def repeat_second(second: Path, path: Path, seconds: int, before: Mapping[int, W
 
 
 def later(source: McapIndex, run: MessageRun, seconds: int) -> Bytes:
-    """The messages, the cycles of states that much later."""
+    """The messages, the cycles of states and blocks that much later."""
     rows = run.rows.copy()
     schema = source.schemas[source.channels[run.channel_id].schema_id]
+    content = rows[:, HEAD_SIZE:]
     if schema.name in STATE_TYPES:
         layout = fixed_layout(parse_schema(schema.name, schema.data.decode()))
-        rows[:, HEAD_SIZE:].view(layout.dtype)["cycle"] += np.uint64(CYCLES * seconds)
+        content.view(layout.dtype)["cycle"] += np.uint64(CYCLES * seconds)
+    elif schema.name.endswith("Block"):
+        place = place_of_first_cycle(content[0])
+        cycles = np.ascontiguousarray(content[:, place : place + 8]).view("<u8") + np.uint64(CYCLES * seconds)
+        content[:, place : place + 8] = cycles.view(np.uint8)
     return rows
+
+
+def place_of_first_cycle(block: Bytes) -> int:
+    """In its CDR: behind the four bytes before all, two of 4 bytes, and a text with its length; of 8 bytes."""
+    text = int.from_bytes(block[12:16].tobytes(), "little")
+    return 4 + -(-(12 + text) // 8) * 8
 
 
 def announce(file: McapFile, source: McapIndex, channel: Channel) -> None:

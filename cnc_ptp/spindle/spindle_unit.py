@@ -128,7 +128,8 @@ class SpindleUnit(Unit):
         """See Unit; the source of a refused command finds the refusal in the next block."""
         record = super().command(command, cycle)
         source = command.arguments.get("source") or command.arguments.get("owner")
-        if not record.accepted and source and isinstance(source, str) and command.command != "upstream_lost":
+        is_read = isinstance(source, str) and (source in self.sources or bool(source and not self.sources))
+        if not record.accepted and is_read and command.command != "upstream_lost":
             self._refused.append(Refusal(source, record.error_id, record.message))
         return record
 

@@ -18,3 +18,15 @@ def test_a_source_that_is_a_text_gets_it() -> None:
     bench.refused("start", direction="cw", speed_rpm=-1.0, source="channel")
     bench.run(10)
     assert [(refusal.source, refusal.number) for refusal in bench.last.refused] == [("channel", 24001)]
+
+
+def test_a_source_that_the_machine_does_not_have_gets_none() -> None:
+    """Not a number is a text in recordings: `bench.random_commands` with seed 22 found that a replay had one more."""
+    bench = spindle_bench()
+    bench.unit.sources = ["plc", "channel"]
+    text = bench.refused("stop", source="nan")
+    known = "nothing was changed. Known: plc, channel"
+    assert text == f"P-ERR-22001 spindle s: stop refused: unknown source 'nan'; {known}"
+    bench.refused("start", direction="cw", speed_rpm=-1.0, source="channel")
+    bench.run(10)
+    assert [refusal.source for refusal in bench.last.refused] == ["channel"]
