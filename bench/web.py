@@ -183,13 +183,15 @@ def session(port: int, graph: psutil.Process, effort: Effort) -> WebRun:
             run.positions = shown_positions(page, min(DISPLAYED, effort.graph_seconds))
             page.evaluate(KEEP_PRESSES)
             count = effort.scaled(PRESSES, least=2)
-            run.ends["key up"] = collect(count, lambda: released(page, observer, held, run.reactions))
+            run.ends["key up"] = collect("key up", count, lambda: released(page, observer, held, run.reactions))
         count = effort.scaled(KILLED)
-        run.ends["browser killed"] = collect(count, lambda: killed(playwright, address, observer, held))
+        run.ends["browser killed"] = collect(
+            "browser killed", count, lambda: killed(playwright, address, observer, held)
+        )
         with own_browser(playwright) as (browser, _):
             page = open_page(browser, proxy.address, command=True)
             count = effort.scaled(STALLED)
-            run.ends["socket stalled"] = collect(count, lambda: stalled(page, proxy, observer, held))
+            run.ends["socket stalled"] = collect("socket stalled", count, lambda: stalled(page, proxy, observer, held))
     return run
 
 

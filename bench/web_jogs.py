@@ -30,6 +30,8 @@ HELD = (0.2, 0.5)
 STALL = 0.6
 """Seconds after the standstill for which a socket still stalls: what is late must start nothing."""
 SETTLING = 0.4
+TOLD = 10
+"""Ends from one line of progress to the next."""
 MOST_TRIES = 5
 """For each end that counts."""
 KEPT_BLOCKS = 6000
@@ -237,12 +239,16 @@ def ended(observer: Observer, moment: int) -> End | None:
     return observer.end_after(moment)
 
 
-def collect(count: int, one_end: Callable[[], End | None]) -> list[End]:
-    """So many ends. Raises RuntimeError where most jogs end before."""
+def collect(kind: str, count: int, one_end: Callable[[], End | None]) -> list[End]:
+    """So many ends, with a line after each tenth of them. Raises RuntimeError where most jogs end before."""
     found: list[End] = []
     for _ in range(MOST_TRIES * count):
-        if (end := one_end()) is not None:
-            found.append(end)
+        if (end := one_end()) is None:
+            continue
+        found.append(end)
+        if len(found) == count or len(found) % TOLD == 0:
+            latest = max(each.begins for each in found)
+            print(f"web: {kind}, {len(found)} of {count}: the latest stop after {latest:.0f} ms", file=sys.stderr)
         if len(found) == count:
             return found
     raise RuntimeError(f"{len(found)} of {MOST_TRIES * count} jogs lasted until their end: the computer is too busy")
