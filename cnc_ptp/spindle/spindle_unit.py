@@ -128,8 +128,9 @@ class SpindleUnit(Unit):
         """See Unit; the source of a refused command finds the refusal in the next block."""
         record = super().command(command, cycle)
         source = command.arguments.get("source") or command.arguments.get("owner")
-        is_read = isinstance(source, str) and (source in self.sources or bool(source and not self.sources))
-        if not record.accepted and is_read and command.command != "upstream_lost":
+        if record.accepted or not source or not isinstance(source, str) or command.command == "upstream_lost":
+            return record
+        if not self.sources or source in self.sources:
             self._refused.append(Refusal(source, record.error_id, record.message))
         return record
 
