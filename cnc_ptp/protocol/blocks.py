@@ -10,8 +10,8 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import IntEnum
-from math import isfinite
-from typing import Any, NamedTuple
+from math import inf, isfinite, nan
+from typing import Any, Final, NamedTuple
 
 from cnc_ptp.errors import Value
 
@@ -41,24 +41,44 @@ class Command:
     @classmethod
     def from_record(cls, record: CommandRecord) -> Command:
         """The command of a record; older records name the file of a table in addition."""
-        arguments = json.loads(record.arguments_json)
+        arguments = arguments_of(record.arguments_json)
         if "table" in arguments:
             arguments.pop("file", None)
         return cls(record.target, record.command, arguments, record.id)
 
 
 def json_of(arguments: Mapping[str, Any]) -> str:
-    """Arguments as JSON; values unknown to JSON (nan, inf) as text, which every unit refuses as well."""
+    """Arguments as JSON; numbers that it does not have as `{"$numberDouble": "NaN"}`, other values as their repr."""
     try:
         return json.dumps(arguments, sort_keys=True, ensure_ascii=False, default=repr, allow_nan=False)
     except ValueError:
-        shown = {
-            name: value
-            if isinstance(value, str | int) or (isinstance(value, float) and isfinite(value))
-            else repr(value)
-            for name, value in arguments.items()
-        }
-        return json.dumps(shown, sort_keys=True, ensure_ascii=False)
+        return json.dumps(_extended(arguments), sort_keys=True, ensure_ascii=False, default=repr)
+
+
+def arguments_of(arguments_json: str) -> dict[str, Any]:
+    """What `json_of` has written. Raises ValueError."""
+    arguments: dict[str, Any] = json.loads(arguments_json, object_hook=_number_or_object)
+    return arguments
+
+
+NUMBER: Final = "$numberDouble"
+"""The key of a number that JSON does not have, as in MongoDB's Extended JSON."""
+NOT_FINITE: Final = {"NaN": nan, "Infinity": inf, "-Infinity": -inf}
+
+
+def _extended(value: Any) -> Any:
+    if isinstance(value, float) and not isfinite(value):
+        return {NUMBER: "NaN" if value != value else "Infinity" if value > 0.0 else "-Infinity"}
+    if isinstance(value, Mapping):
+        return {name: _extended(each) for name, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [_extended(each) for each in value]
+    return value
+
+
+def _number_or_object(read: dict[str, Any]) -> Any:
+    text = read.get(NUMBER)
+    return NOT_FINITE[text] if len(read) == 1 and isinstance(text, str) and text in NOT_FINITE else read
 
 
 @dataclass(slots=True)

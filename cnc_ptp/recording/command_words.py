@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from typing import Any
 
-from cnc_ptp.protocol.blocks import CommandRecord
+from cnc_ptp.protocol.blocks import CommandRecord, arguments_of
 from cnc_ptp.recording.units import unit_of, without_unit
 
 MAIN = {
@@ -47,7 +46,7 @@ def argument_words(arguments_json: str, distance: str) -> str:
 
 def json_object(text: str) -> dict[str, Any] | None:
     try:
-        values = json.loads(text)
+        values = arguments_of(text)
     except ValueError:
         return None
     return values if isinstance(values, dict) else None

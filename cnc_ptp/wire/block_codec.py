@@ -6,7 +6,6 @@ carry commands, answers, requests or refusals are encoded field by field.
 
 from __future__ import annotations
 
-import json
 import struct
 from collections.abc import Callable, Hashable
 from typing import Any
@@ -25,6 +24,7 @@ from cnc_ptp.protocol.blocks import (
     PlcBlock,
     Refusal,
     SpindleBlock,
+    arguments_of,
 )
 from cnc_ptp.wire.form import Form
 from cnc_ptp.wire.layout import NOT_ENCODED, Layout, encode, header_at
@@ -67,7 +67,7 @@ _SHAPES: dict[type, Callable[[Any], Hashable]] = {
 """By class: what blocks with the same form have in common; None for a block without one."""
 
 _NESTED: dict[str, Callable[[Any], Any]] = {
-    "commands": lambda sent: Command(sent.target, sent.command, json.loads(sent.arguments_json), sent.id),
+    "commands": lambda sent: Command(sent.target, sent.command, arguments_of(sent.arguments_json), sent.id),
     "refused": lambda text: Refusal.decode(text),
     "job_events": lambda sent: JobEvent(sent.job, sent.status, sent.cycle, sent.error_id),
     "answers": lambda sent: CommandAnswer(sent.id, sent.error_id, sent.job, sent.message, sent.values_json),

@@ -18,11 +18,13 @@ from cnc_ptp.recording.writer import Recording
 
 PTP = Path(__file__).parents[2] / "config" / "ptp.yaml"
 MOVE = {"target": 100.0, "velocity": 200.0}
+NAN, INFINITE, NEGATIVE = ({"$numberDouble": text} for text in ("NaN", "Infinity", "-Infinity"))
 REFUSED = (
-    ({"target": math.nan, "velocity": 100.0}, {"target": "nan", "velocity": 100.0}),
-    ({"target": math.inf}, {"target": "inf"}),
-    ({"target": 1, "velocity": -math.inf}, {"target": 1, "velocity": "-inf"}),
-    ({"target": [1.0, math.nan]}, {"target": "[1.0, nan]"}),
+    ({"target": math.nan, "velocity": 100.0}, {"target": NAN, "velocity": 100.0}),
+    ({"target": math.inf}, {"target": INFINITE}),
+    ({"target": 1, "velocity": -math.inf}, {"target": 1, "velocity": NEGATIVE}),
+    ({"target": [1.0, math.nan]}, {"target": [1.0, NAN]}),
+    ({"target": {"a": (math.inf, 2)}}, {"target": {"a": [INFINITE, 2]}}),
 )
 
 

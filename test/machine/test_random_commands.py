@@ -80,3 +80,12 @@ def test_a_violation_is_printed_with_its_seed(
 def test_the_command_counts_its_steps(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["30", "4"]) == 0
     assert capsys.readouterr().out.startswith("30 steps from seed 4 in ")
+
+
+@pytest.mark.parametrize("seed", [22, 1010])
+def test_a_life_that_has_found_a_replay_with_another_refusal(seed: int) -> None:
+    """A source, and a direction, that were not a number came back from the recording as a text."""
+    machine = CommandedMachine(seed)
+    for _ in range(random_commands.LIFE):
+        machine.step()
+    assert machine.finish() == []
