@@ -1,5 +1,6 @@
 # make demo   a part is machined by the ROS graph: runs/demo.mcap and runs/demo.html; LOOK=1: pages of it in a browser
-# make test   all tests;  make lint: ruff and mypy;  make bench: figures, never fails on time;  make setup: the set-up alone
+# make test   the tests; LONG=1: with those that take long;  make lint: ruff and mypy;  make setup: the set-up alone
+# make bench   figures; it never fails on time
 # make campaign   processes of running machines are killed at random moments, 5 minutes; HOURS=8 longer, SEED=7 other ones
 # make figures   every scenario of examples/figures runs and becomes a picture in docs/figures
 # make docs   reference pages and gallery are made again, then the site: build/site/index.html
@@ -47,10 +48,13 @@ demo: setup
 	@echo "The report is runs/demo.html. Pages of this run in a browser, http://localhost:8080: make demo LOOK=1, or $(BIN)/cnc_ptp web runs/demo.mcap"
 	$(if $(LOOK),$(BIN)/cnc_ptp web runs/demo.mcap)
 
+# As LONG=1 does not: without those that are marked as long.
+SHORT := $(if $(LONG),,-m "not long")
+
 test: setup
-	$(BIN)/pytest -n 2 --dist worksteal --ignore test/graph
+	$(BIN)/pytest -n 2 --dist worksteal --ignore test/graph $(SHORT)
 	CNC_PTP_PURE=1 $(BIN)/pytest -n 2 -m interpreted --ignore test/graph
-	$(BIN)/pytest test/graph
+	$(BIN)/pytest test/graph $(SHORT)
 
 lint: setup
 	$(BIN)/ruff check .

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from error_support import refused
+from long_support import long
 from machine_support import MILL, MachineBench, UnitBench, assert_axis_smooth, axis_bench
 from slave_support import SlaveBench, assert_linear
 from superposition_support import A, J, column, external_axis, feed, generator, has_bit, moving_axis
@@ -349,7 +350,7 @@ def brakes_for_the_end(bench: MachineBench) -> None:
         bench.run(0.01)
 
 
-@pytest.mark.parametrize("block_cycles", [1, 10])
+@pytest.mark.parametrize("block_cycles", [1, *long([10])])
 @pytest.mark.parametrize("node", ["x", "y"])
 @pytest.mark.parametrize("way_on", ["G01 X0", "M07\nG01 X0", "G01 X100 Y20", "G04 X0.1\nG01 X0", "G02 X80 Y50 I-10 J0"])
 def test_an_element_that_brakes_for_its_end_leaves_the_next_one_to_its_direction(

@@ -279,6 +279,7 @@ def test_every_command_in_every_state(state: str) -> None:
             assert columns(bench) == theirs, (command, state)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("state", STATES)
 def test_every_command_in_every_state_ends_in_rest(state: str) -> None:
     """After each command everything can be brought to rest and powered, reset and moved on."""

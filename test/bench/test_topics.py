@@ -34,6 +34,7 @@ from cnc_ptp.parameters import read_machine
 SMALLEST = Effort(runs=1, size=0.002, graph_seconds=1.0)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "topic", [interpreter, motion, control, smoothing, lookahead, streaming, recording, offline, spindles, lists, sweep]
 )
@@ -76,6 +77,7 @@ def test_graph_composed_in_one_process(tmp_path: Path) -> None:
     assert graph.missing_samples(record) == 0
 
 
+@pytest.mark.long
 def test_a_plc_beside_the_graph(monkeypatch: pytest.MonkeyPatch) -> None:
     """Four topics at once; how fast, is not judged."""
     monkeypatch.setenv("ROS_DOMAIN_ID", "0")  # it takes a domain of its own, which ends with the test

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from long_support import long
 from path_checker import Axis, PathChecker, Run, Segment
 from path_moments import disturbed
 from random_paths import RandomProgram
@@ -14,7 +15,7 @@ from random_paths import RandomProgram
 AXIS = Axis(100.0, 100.0, 1000.0, 1000.0, 20_000.0)
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", [*range(4), *long(range(4, 20))])
 def test_random_programs(seed: int) -> None:
     assert RandomProgram(seed).check().texts == []
 
@@ -25,6 +26,7 @@ FAILED = (
 )  # fmt: skip
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", FAILED)
 def test_programs_that_have_failed(seed: int) -> None:
     assert RandomProgram(seed).check().texts == []

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from long_support import long
 from machine_support import CYCLE_TIME, MILL, MachineBench
 
 from cnc_ptp.channel import time_estimate
@@ -75,7 +76,7 @@ def assert_progress(bench: MachineBench) -> None:
     assert (share[-1], left[-1]) == (1.0, 0.0)
 
 
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", [*range(6), *long(range(6, 30))])
 def test_random_programs_take_as_long_as_estimated(seed: int) -> None:
     bench = MachineBench(program(*random_lines(random.Random(seed)))).run()
     assert bench.events == []
@@ -91,10 +92,10 @@ def test_random_programs_take_as_long_as_estimated(seed: int) -> None:
     ("machine", "file", "dialect"),
     [
         ("config/mill.yaml", "bracket.nc", None),
-        ("config/mill.yaml", "pocket.nc", None),
-        ("config/mill.yaml", "plate.ngc", "iso"),
+        pytest.param("config/mill.yaml", "pocket.nc", None, marks=pytest.mark.long),
+        pytest.param("config/mill.yaml", "plate.ngc", "iso", marks=pytest.mark.long),
         ("config/lathe.yaml", "lathe.nc", None),
-        ("config/lathe.yaml", "turning.nc", None),
+        pytest.param("config/lathe.yaml", "turning.nc", None, marks=pytest.mark.long),
     ],
 )
 def test_examples_take_as_long_as_estimated(machine: str, file: str, dialect: str | None) -> None:

@@ -89,6 +89,7 @@ def units_of(run: Run, machine: MachineParameters) -> Mapping[str, Unit]:
     return build_units(machine, scenario=entries, plc_file=read_plc(str(ROOT / run.plc)) if run.plc else None)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("run", [*RUNS, *map(of_figure, FIGURES)], ids=lambda run: run.name)
 def test_an_example_has_no_violation(run: Run) -> None:
     machine = run.parameters()
