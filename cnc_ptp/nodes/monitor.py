@@ -71,7 +71,7 @@ class RunMonitor(PollingNode):
         self._needed: list[Subscription[Any]] = []
         self._handover = handover
         self._report_publisher = self.create_publisher(msg.BlockReport, REPORT, BLOCKS)
-        self._ready_timer = self.create_timer(process.READY_PERIOD, self._report_ready)
+        self._ready_timer = process.timer(self, process.READY_PERIOD, self._report_ready)
         for channel, program in self.programs.items():
             self._need(ChannelBlock, msg.ChannelBlock, channel, program.add)
         self._need(PlcBlock, msg.PlcBlock, PLC, self._on_plc)

@@ -116,10 +116,10 @@ class PlcBridgeNode(UnitNode):
                 self._listen(unit, name)
         self._hli_topics = HliTopics(self, self._hli)
         self._emergency_stop = EmergencyStopTopics(self, self.plc)
-        self.create_timer(JOG_PATIENCE / 4.0, self._watch_jogs)
+        process.timer(self, JOG_PATIENCE / 4.0, self._watch_jogs)
         self.create_subscription(msg.LifeSign, LIFE_SIGN, self._on_life_sign, PLC_INPUT)
         if isfinite(self._life_sign_timeout):
-            self.create_timer(self._life_sign_timeout / 4.0, self._watch_topics)
+            process.timer(self, self._life_sign_timeout / 4.0, self._watch_topics)
         self._answers = CouplingServices(self, self.plc, list(self._machine.axes))
         SetpointServices(self, self.plc, self._machine.axes)
         self._trajectories = TrajectoryServer(self, self.plc, self._machine)

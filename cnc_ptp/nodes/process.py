@@ -13,12 +13,15 @@ from pathlib import Path
 from typing import Any
 
 import rclpy
+from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
 from rclpy.context import Context
 from rclpy.executors import Executor
 from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.signals import SignalHandlerOptions
+from rclpy.timer import Timer
 from rclpy.utilities import get_rmw_implementation_identifier
 
 from cnc_ptp.errors import WRONG_INPUT, CncError
@@ -121,6 +124,11 @@ def claim_domain() -> socket.socket:
             "nothing was started. Wait for its end, choose another --namespace, or set ROS_DOMAIN_ID to another number",
         ) from None
     return claim
+
+
+def timer(node: Node, period: float, call: Callable[[], None]) -> Timer:
+    """Calls each `period` (s) by a clock that cannot be set: other timers stop when the wall clock is set back."""
+    return node.create_timer(period, call, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
 
 def is_read(node: Node, publisher: Publisher[Any], names: Set[str]) -> bool:

@@ -137,8 +137,8 @@ class RecorderNode(PollingNode):
         received = self._guarded(self._on_log)
         self.create_subscription(Log, ROSOUT, received, qos_profile_rosout_default, raw=True)
         RecordingServices(self, lambda: self._recording)
-        self._ready_timer = self.create_timer(process.READY_PERIOD, self._report_ready)
-        self.create_timer(LOOK_PERIOD, self._guarded(self._look))
+        self._ready_timer = process.timer(self, process.READY_PERIOD, self._report_ready)
+        process.timer(self, LOOK_PERIOD, self._guarded(self._look))
 
     def _subscribe_to_blocks(self) -> Iterator[Subscription[Any]]:
         yield self._subscribe(msg.CycleTick, TICK, chain(decode_tick, self._on_tick))

@@ -565,6 +565,30 @@ def test_anybody_may_stop_what_another_plc_holds() -> None:
     assert len(x.control._stopping) <= 16
 
 
+@pytest.mark.parametrize(("type", "command"), [(1, "stop"), (2, "halt"), (13, "emergency_stop")])
+def test_each_way_to_stop_counts(type: int, command: str) -> None:
+    x = moving(semaphore=0)
+    x.take("p2", feed_hold=1.0, external={**AXIS, "type": type})
+    assert x.block() == [(command, {})]
+    assert [number for number, _ in x.told] == [26162]
+
+
+@pytest.mark.parametrize("kind", ["axis", "spindle", "channel"])
+def test_anybody_may_give_an_emergency_stop(kind: str) -> None:
+    x = Object(kind)
+    x.take("p1", override=50.0)
+    x.block()
+    for _ in range(3):
+        assert not x.take("p2", emergency_stop=1.0, override=5.0)
+    assert x.block() == [("set_emergency_stop", {"enabled": True})]
+    text = "'p2' stops it while 'p1' holds it; the stop is carried out, nothing else was changed"
+    assert x.told == [(26162, f"plc: HLI of x: {text}")]
+    x.take("p2", emergency_stop=0.0)
+    assert x.block() == []
+    x.take("p2", emergency_stop=1.0)
+    assert x.block() == [("set_emergency_stop", {"enabled": True})] and x.control.holder == "p1"
+
+
 # ---------------------------------------------------------------- acknowledgements, units
 
 

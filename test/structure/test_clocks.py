@@ -36,6 +36,17 @@ def test_only_stamps_come_from_the_wall_clock():
     assert found == {*READS}
 
 
+def test_no_timer_waits_for_the_wall_clock():
+    """That of a node counts with the wall clock where no other one is given: set back by an hour, it stops for an hour."""
+    calls = {
+        (str(file.relative_to(PACKAGE)), tuple(sorted(keyword.arg or "" for keyword in node.keywords)))
+        for file in PACKAGE.rglob("*.py")
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Call) and ast.unparse(node.func).rpartition(".")[2] in ("create_timer", "create_rate")
+    }
+    assert calls == {("nodes/process.py", ("clock",))}
+
+
 def test_no_other_name_hides_a_wall_clock():
     """`from time import time` and the like would not be found above."""
     for file in PACKAGE.rglob("*.py"):

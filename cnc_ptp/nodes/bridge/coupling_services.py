@@ -14,6 +14,7 @@ from rclpy.serialization import deserialize_message
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.command_files import with_table
+from cnc_ptp.nodes import process
 from cnc_ptp.nodes.topics import COMMAND, COUPLING_SERVICES
 from cnc_ptp.nodes.unit.requests import RUN_OVER, given_arguments
 from cnc_ptp.nodes.unit.unit_node import UnitNode
@@ -53,7 +54,7 @@ class CouplingServices:
         self._plc = plc
         self._open: list[Call] = []
         node.poll(msg.CommandRecord, COMMAND, self._on_record, NEW_RECORDS)
-        node.create_timer(WATCH_PERIOD, self._watch)
+        process.timer(node, WATCH_PERIOD, self._watch)
         for axis in axes:
             for command, service_type in COUPLING_SERVICES.items():
                 asked = partial(self._couple, axis, command)

@@ -157,9 +157,9 @@ class UnitNode(PollingNode):
         self._make_publishers()
         self._make_subscriptions()
         self._make_services()
-        self._ready_timer = self.create_timer(process.READY_PERIOD, self._report_ready)
-        self.create_timer(self._watchdog.seconds / 4.0, self._watch)
-        self.create_timer(DIAGNOSTICS_PERIOD, self._publish_diagnostics)
+        self._ready_timer = process.timer(self, process.READY_PERIOD, self._report_ready)
+        process.timer(self, self._watchdog.seconds / 4.0, self._watch)
+        process.timer(self, DIAGNOSTICS_PERIOD, self._publish_diagnostics)
         threading.Thread(target=self._heartbeat_while_busy, daemon=True).start()
 
     @property
@@ -504,7 +504,7 @@ class UnitNode(PollingNode):
             self.tell(Severity.ERROR, BLOCK_SKIPPED, f"{self.unit.name}: {reason}")
         self._gate.drop(source)
         if self._handover is None and not self._looking:
-            self._looking = self.create_timer(LOOK_PERIOD, self.look)  # what has woken this node may be what is lost
+            self._looking = process.timer(self, LOOK_PERIOD, self.look)  # what has woken this node may be what is lost
         self.command(Command(self.unit.name, "upstream_lost", {"source": source}), None)
         if source == CLOCK:
             self._alone = True

@@ -79,8 +79,11 @@ SPINDLE_COMMANDS: Mapping[int, Meaning] = {
 }
 EXTERNAL_COMMANDS = {"axis": AXIS_COMMANDS, "spindle": SPINDLE_COMMANDS}
 """Kind of unit -> `type` -> what it means."""
-STOP = 1
-"""`type` of axes and spindles."""
+STOPS: Mapping[str, Mapping[int, str]] = {
+    kind: {number: each.command for number, each in known.items() if each.command in ("stop", "halt", "emergency_stop")}
+    for kind, known in EXTERNAL_COMMANDS.items()
+}
+"""Kind of unit -> `type` -> a command that brings it to rest."""
 DIRECTIONS = {1: "cw", -1: "ccw", 2: "shortest"}
 BUFFERABLE = ("move_absolute", "move_relative", "move_modulo", "move_additive", "move_velocity")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, Command, SpindleBlock
 from cnc_ptp.protocol.jobs import JobStatus
@@ -47,9 +48,9 @@ class ExternalJobs:
         self._running.clear()
         self._next_is_abandoned = unanswered
 
-    def stop(self) -> None:
+    def stop(self, command: str, arguments: dict[str, Any]) -> None:
         """Somebody stops the unit."""
-        self._commands.append(Command(self._name, "stop", {}))
+        self._commands.append(Command(self._name, command, arguments))
 
     def read(self, block: AxisBlock | SpindleBlock | ChannelBlock) -> None:
         """What has become of the jobs; an abandoned one that is active is halted, once."""

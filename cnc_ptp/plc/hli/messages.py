@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
-from cnc_ptp.plc.hli.external_commands import STOP
+from cnc_ptp.plc.hli.external_commands import STOPS
 from cnc_ptp.protocol.control_units import CONTROL_UNITS
 
 HLI_UNITS = 1
@@ -85,6 +85,17 @@ def in_si(external: dict[str, float]) -> None:
         external[name] /= PER_UNIT[name]
 
 
-def is_stop(message: ControlMessage) -> bool:
-    """Its external command is STOP."""
-    return message.semaphore and message.external["type"] == STOP
+EMERGENCY_STOP = "emergency_stop"
+
+
+def stops_of(kind: str, message: ControlMessage) -> dict[str, dict[str, Any]]:
+    """What brings the object to rest: names of commands and their arguments."""
+    stops: dict[str, dict[str, Any]] = {}
+    enabled, wanted = message.units[EMERGENCY_STOP]
+    if enabled and wanted:
+        stops["set_emergency_stop"] = {"enabled": True}
+    if message.semaphore:
+        command = STOPS[kind].get(int(message.external["type"]))
+        if command is not None:
+            stops[command] = {}
+    return stops

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 from cnc_ptp.plc.hli.external_commands import external_command
 from cnc_ptp.plc.hli.external_jobs import ExternalJobs
-from cnc_ptp.plc.hli.messages import ControlMessage, is_stop
+from cnc_ptp.plc.hli.messages import ControlMessage, stops_of
 from cnc_ptp.plc.sequence import is_newer
 from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, Command, CommandAnswer, ControlUnitState, SpindleBlock
 from cnc_ptp.protocol.control_units import CONTROL_UNITS, PERCENT, ControlUnit
@@ -107,8 +107,8 @@ class ObjectControl:
         """Edges for the next block, with the PLC."""
         self._external_waits: Command | None = None
         self._jobs = ExternalJobs(name, kind)
-        self._stopping: set[str] = set()
-        """PLCs that do not hold the object, and whose last message stops it."""
+        self._stopping: set[tuple[str, str]] = set()
+        """PLCs that do not hold the object, and the stops of their last message."""
         self._acknowledged: list[int] = []
         self.serves_functions = False
         """The PLC acknowledges the functions of a channel, or the gear changes of a spindle."""
@@ -153,21 +153,25 @@ class ObjectControl:
 
     def _take_from_another(self, message: ControlMessage) -> None:
         """Of a PLC that does not hold the object only a stop counts: whoever sees a reason to stop may do so."""
-        source = message.source
-        if not is_stop(message):
-            self._stopping.discard(source)
-            if message.commands:
-                text = f"'{source}' commands it too and is refused while '{self.holder}' holds it; nothing was changed"
-                self._tell_once(SECOND_PLC, source, text)
-        elif source not in self._stopping:
-            if len(self._stopping) >= MOST_SOURCES:
-                self._stopping.clear()
-            self._stopping.add(source)
-            self._jobs.stop()
+        source, stops = message.source, stops_of(self.kind, message)
+        for command, arguments in stops.items():
+            if (source, command) not in self._stopping:
+                self._jobs.stop(command, arguments)
+        self._forget_stops(source)
+        if len(self._stopping) >= MOST_SOURCES:
+            self._stopping.clear()
+        self._stopping |= {(source, command) for command in stops}
+        if stops:
             text = (
                 f"'{source}' stops it while '{self.holder}' holds it; the stop is carried out, nothing else was changed"
             )
             self._tell_once(SECOND_PLC, f"stop of {source}", text)
+        elif message.commands:
+            text = f"'{source}' commands it too and is refused while '{self.holder}' holds it; nothing was changed"
+            self._tell_once(SECOND_PLC, source, text)
+
+    def _forget_stops(self, source: str) -> None:
+        self._stopping = {(other, command) for other, command in self._stopping if other != source}
 
     def heard(self, source: str, sequence: int, now: float) -> bool:
         """The PLC that holds the object has sent the same again: nothing else changes. False if it must be read."""
@@ -181,7 +185,7 @@ class ObjectControl:
         """What another PLC had switched on last is no edge of this one."""
         if source != self._last_source:
             self._high.clear()
-            self._stopping.discard(source)
+            self._forget_stops(source)
             self._told = {(number, what) for number, what in self._told if number != SECOND_PLC}
         self._last_source, self._changed = source, False
 
