@@ -31,6 +31,7 @@ from cnc_ptp.wire.layout import Bytes
 UNREADABLE = 26001
 NOT_MCAP = 26002
 CORRUPT = 26003
+WITHOUT_CHUNKS = 26206
 
 Record = TypeVar("Record")
 KNOWN_OPCODES = frozenset(int(opcode) for opcode in Opcode)
@@ -97,7 +98,10 @@ class RecordReader:
 
     def in_chunk(self, record: RawRecord) -> Iterator[Schema | Channel | MessageRun]:
         """Schemas, channels and runs of messages in a chunk."""
-        content = self.chunk(record)
+        yield from self.in_records(record, self.chunk(record))
+
+    def in_records(self, record: RawRecord, content: bytes) -> Iterator[Schema | Channel | MessageRun]:
+        """The same of records one after another; `record` is the place of errors."""
         data = np.frombuffer(content, dtype=np.uint8)
         offset = 0
         while offset < len(data):
@@ -124,6 +128,13 @@ class RecordReader:
             CORRUPT,
             f"recording {self.path}: corrupt at offset {offset}: {reason}",
             "nothing was read, take an intact copy of the file or save what is whole with 'cnc_ptp recover'",
+        )
+
+    def without_chunks(self) -> CncError:
+        return CncError(
+            WITHOUT_CHUNKS,
+            f"recording {self.path}: its messages are in no chunks",
+            "nothing was read, 'cnc_ptp recover' makes a file that has them",
         )
 
     def require_magic(self, begin: bytes) -> None:

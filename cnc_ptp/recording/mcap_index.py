@@ -48,7 +48,7 @@ class ChunkPlace(NamedTuple):
 class McapIndex(RecordReader):
     """Chunks, channels and metadata of an MCAP file, which stays open until `close`.
 
-    Raises CncError 26001 (cannot be opened), 26002 (not an MCAP file), 26003 (corrupt: where, why).
+    Raises CncError 26001 (cannot be opened), 26002 (not an MCAP file), 26003 (corrupt: where, why), 26206 (no chunks).
     """
 
     def __init__(self, path: Path) -> None:
@@ -63,6 +63,8 @@ class McapIndex(RecordReader):
         """Offsets by name."""
         self._chunk_count = -1
         """What the summary says; -1: nothing."""
+        self._has_loose = False
+        """There are messages in no chunk."""
         try:
             self._file = os.open(path, os.O_RDONLY)
             self._size = os.fstat(self._file).st_size
@@ -77,6 +79,9 @@ class McapIndex(RecordReader):
             self._read_summary(summary)
         if not self.chunks and self._chunk_count != 0:
             self._scan()
+        if not self.chunks and (self._has_loose or any(self.counts.values())):
+            self.close()
+            raise self.without_chunks()
 
     @property
     def missing(self) -> str:
@@ -190,6 +195,8 @@ class McapIndex(RecordReader):
                 self.metadata.append(self.parse(Metadata.read, record))
             elif record.opcode == Opcode.ATTACHMENT:
                 self.attachments[self.attachment(record).name] = record.offset
+            elif record.opcode == Opcode.MESSAGE:
+                self._has_loose = True
             elif record.opcode == Opcode.CHUNK:
                 first, last = struct.unpack_from("<QQ", record.body)
                 self.chunks.append(ChunkPlace(first, last, record.offset, len(record.body), NO_INDEX))

@@ -18,7 +18,7 @@ from mcap.writer import MCAP0_MAGIC
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.recording.bag import FILE, RECORD, write_beside
-from cnc_ptp.recording.mcap_chunks import KNOWN_OPCODES, MessageRun, RawRecord, RecordReader
+from cnc_ptp.recording.mcap_chunks import KNOWN_OPCODES, STEP, MessageRun, RawRecord, RecordReader
 from cnc_ptp.recording.mcap_file import METADATA, MISSING, NOT_WRITTEN, RECORD_PREFIX, McapFile
 from cnc_ptp.recording.mcap_index import McapIndex
 from cnc_ptp.recording.origin import WITHOUT
@@ -134,6 +134,7 @@ def _recover_file(path: Path, output: Path, before: Sequence[str] = (), behind: 
         copy = _Copy(records, file, *_names_of_summary(path))
         for record in records:
             copy.take(record)
+        copy.take_loose()
         if records.end:
             copy.recovered.lost.append(records.end)
         lost = [*(f"{name} is missing" for name in [*before, *behind]), *copy.recovered.lost]
@@ -203,26 +204,56 @@ class _Copy:
         self._channels = dict(channels)
         self._ids: dict[int, int] = {}
         """Channel there -> channel here."""
+        self._left_out: set[int] = set()
+        """Channels whose messages cannot be taken."""
+        self._loose = bytearray()
+        """Messages that are in no chunk."""
+        self._last_loose: RawRecord | None = None
 
     def take(self, record: RawRecord) -> None:
-        try:
+        with self._noted(record):
             if record.opcode == Opcode.CHUNK:
-                self._chunk(record)
+                self._take_items(record, self._records.in_chunk(record))
+            elif record.opcode in (Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE):
+                self._loose += RECORD_PREFIX.pack(record.opcode, len(record.body))
+                self._loose += record.body
+                self._last_loose = record
+                if len(self._loose) > STEP:
+                    self.take_loose()
             elif record.opcode == Opcode.ATTACHMENT:
                 part = self._records.attachment(record)
                 self._file.attachment(part.name, part.media_type, part.data, part.log_time)
             elif record.opcode == Opcode.METADATA:
                 self._metadata(self._records.parse(Metadata.read, record))
+
+    def take_loose(self) -> None:
+        """The messages that are in no chunk become one."""
+        if self._last_loose is not None:
+            record, content = self._last_loose, bytes(self._loose)
+            self._last_loose, self._loose = None, bytearray()
+            with self._noted(record):
+                self._take_items(record, self._records.in_records(record, content))
+
+    @contextmanager
+    def _noted(self, record: RawRecord) -> Iterator[None]:
+        """What cannot be read is noted; what cannot be written raises."""
+        try:
+            yield
         except CncError as error:
             if self._file.failed:
                 raise
-            self.recovered.lost.append(error.reason.partition(": corrupt ")[2] or error.reason)
+            self._note(error.reason.partition(": corrupt ")[2] or error.reason)
         except struct.error:
-            self.recovered.lost.append(f"at offset {record.offset}: a record that is too short")
+            self._note(f"at offset {record.offset}: a record that is too short")
 
-    def _chunk(self, record: RawRecord) -> None:
+    def _note(self, text: str) -> None:
+        if text not in self.recovered.lost:
+            self.recovered.lost.append(text)
+
+    def _take_items(self, record: RawRecord, items: Iterator[Schema | Channel | MessageRun]) -> None:
+        """All of a whole chunk, without messages of channels that are not of ROS 2: that is noted once."""
         runs: list[MessageRun] = []
-        for item in self._records.in_chunk(record):
+        for item in items:
             if isinstance(item, Schema):
                 self._schemas[item.id] = item
             elif isinstance(item, Channel):
@@ -230,8 +261,12 @@ class _Copy:
             else:
                 runs.append(item)
         for run in runs:
-            self._file.messages(self._id_of(run.channel_id, record), run.rows.copy(), run.head["log_time"].copy())
-            self.recovered.messages += len(run.rows)
+            if run.channel_id in self._left_out:
+                continue
+            with self._noted(record):
+                id = self._id_of(run.channel_id, record)
+                self._file.messages(id, run.rows.copy(), run.head["log_time"].copy())
+                self.recovered.messages += len(run.rows)
         self._file.close_chunk()
         self._file.finish_chunks()
 
@@ -242,6 +277,7 @@ class _Copy:
             if channel is None or schema is None:
                 raise self._records.corrupt(record.offset, f"a message of the unknown channel {id} is in the chunk")
             if channel.message_encoding != MessageEncoding.CDR or schema.encoding != SchemaEncoding.ROS2:
+                self._left_out.add(id)
                 raise self._records.corrupt(record.offset, f"{channel.topic} holds no messages of ROS 2")
             self._ids[id] = self._file.channel(
                 channel.topic, schema.name, schema.data.decode(errors="replace"), channel.metadata

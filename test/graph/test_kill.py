@@ -25,6 +25,14 @@ from rosbags.rosbag2 import Reader
 from cnc_ptp.parameters import read_machine
 
 NODES = ["x", "s", "channel", "plc", "clock", "recorder"]
+SAY_SO = {
+    "x": {"plc", "channel"},
+    "s": {"plc", "channel"},
+    "channel": {"x", "y", "s", "plc"},
+    "plc": {"x", "y", "s", "channel"},
+    "clock": {"x", "y", "s", "channel", "plc"},
+}
+"""By the node that is killed: whose watchdog tells of it (26101)."""
 UNDER_WAY = 150_000  # bytes of recording: about a second
 
 
@@ -56,7 +64,9 @@ def test_killed_node(running, node):
     assert "P-ERR-26267" not in output
     lost = {event.source for event in recorded.events if event.error_id == 26101}
     if node != "recorder":
-        assert lost >= {"x": {"plc", "channel"}, "channel": {"x", "y", "plc"}}.get(node, {"plc"} - {node})
+        assert lost >= SAY_SO[node]
+        if node != "s":
+            assert recorded.states["/s/state"]["set_speed_rpm"][-1] == 0.0
 
 
 @pytest.mark.parametrize("node", ["s", "z", "channel", "plc", "clock"])
@@ -152,7 +162,8 @@ def test_killed_server_of_processes(running):
     check_ramps(recorded, skip="", ended=True)
 
 
-def test_killed_node_in_a_free_run_that_is_recorded(tmp_path):
+@pytest.mark.parametrize("node", ["x", "recorder"])
+def test_killed_node_in_a_free_run_that_is_recorded(tmp_path, node):
     """The recorder waits for nobody who is gone, and the clock not for the recorder."""
     (tmp_path / "long.nc").write_text(LONG_PROGRAM.replace(" Z-20", "").replace("N40 Z0\n", ""))
     recording = tmp_path / "run.mcap"
@@ -161,12 +172,13 @@ def test_killed_node_in_a_free_run_that_is_recorded(tmp_path):
     try:
         nodes = dict(graph.wait_for_nodes(7))
         graph.wait_until_recorded(recording, UNDER_WAY)
-        kill(nodes["x"])
+        kill(nodes[node])
         output = graph.finish(expect=1)
-        assert f"P-ERR-26104 node 'x' (process {nodes['x']}) was ended by SIGKILL during the run" in output
+        assert f"P-ERR-26104 node '{node}' (process {nodes[node]}) was ended by SIGKILL during the run" in output
         assert wait_until_gone(nodes.values()) == []
         recorded = verified(recording, whole=False)
-        assert recorded.states["/y/state"]["set_velocity"][-1] == 0.0
+        if node != "recorder":
+            assert recorded.states["/y/state"]["set_velocity"][-1] == 0.0
     finally:
         graph.end()
 
@@ -200,7 +212,7 @@ def check_ramps(recorded, *, skip, ended, axes=("x", "y"), machine=MILL):
 
 
 def test_a_second_interrupt_ends_the_stop(running):
-    graph, nodes, _ = running
+    graph, nodes, recording = running
     for node in ("x", "plc"):  # which do not answer, so that the stop takes its time
         os.kill(nodes[node], signal.SIGSTOP)
     graph.process.send_signal(signal.SIGINT)
@@ -210,6 +222,9 @@ def test_a_second_interrupt_ends_the_stop(running):
     assert "P-ERR-26106 the run was interrupted (SIGINT); everything stops on its ramps" in output
     assert "P-ERR-26106 a second interrupt (SIGTERM) has ended the stop before its end" in output
     assert wait_until_gone(nodes.values()) == []
+    recorded = verified(recording, whole=False)
+    assert "x" in {stop.unit for stop in recorded.drive_stops}
+    assert 26265 in {event.error_id for event in recorded.events}
 
 
 def test_interrupted_supervisor(running):
