@@ -27,6 +27,7 @@ from campaign.table import summary, table
 @click.option("--json", "json_file", type=click.Path(dir_okay=False), help="File for the rows, one a line.")
 @click.option("--keep", type=click.Path(file_okay=False), help="Folder for the recordings of runs with problems.")
 @click.option("--load", "with_load", is_flag=True, help="Load, time and company instead of kills.")
+@click.option("--set-clock", is_flag=True, help="With --load: sets the wall clock of this computer; needs root.")
 @click.option("--soak", type=click.FloatRange(0.0), default=0.0, help="Minutes of a soak behind them.")
 def main(
     seed: int,
@@ -37,13 +38,14 @@ def main(
     json_file: str | None,
     keep: str | None,
     with_load: bool,
+    set_clock: bool,
     soak: float,
 ) -> None:
     """Kill processes of running machines and check that nothing is lost: exit status 1 if anything was."""
     console = Console(highlight=False, width=None if sys.stdout.isatty() else 160)
     folder = Path(keep or tempfile.mkdtemp(prefix="campaign_"))
     if with_load:
-        sys.exit(measure_load(console, folder, soak, json_file))
+        sys.exit(measure_load(console, folder, soak, json_file, sets_clock=set_clock))
     rows: list[kills.Row] = []
     for row in kills.campaign(seed, count, hours * 60.0 if hours else minutes, folder, first=first):
         rows.append(row)
@@ -60,10 +62,10 @@ def main(
     sys.exit(any(not row.good for row in rows))
 
 
-def measure_load(console: Console, folder: Path, soak: float, json_file: str | None) -> bool:
+def measure_load(console: Console, folder: Path, soak: float, json_file: str | None, *, sets_clock: bool) -> bool:
     """True if anything was lost."""
     bad = False
-    for row in load.conditions(folder, minutes=soak):
+    for row in load.conditions(folder, minutes=soak, sets_clock=sets_clock):
         figures = ", ".join(f"{name} {value:g}" for name, value in row.figures.items())
         console.print(f"{row.name}: {figures}{''.join(f'; {each}' for each in row.problems)}")
         add_line(json_file, row.as_json())

@@ -29,11 +29,16 @@ SECONDS = 8.0
 """Of a run that something is done to."""
 FROZEN = 3.0
 """Seconds for which a whole graph stands still."""
+CLOCK_STEP = 3600.0
+"""Seconds by which the wall clock is set."""
+WATCHDOG = 26101
 ROUND = 3.0
 """Seconds that a round of the program takes at least."""
 SUBSCRIBERS, FOREIGN_NODES = 200, 50
-SETTLED = 0.2
-"""Part of a soak after which memory must not grow any more."""
+SETTLED, SETTLING = 0.2, 300.0
+"""Part of a soak, and seconds at most, after which memory must not grow any more."""
+SAMPLING = 5.0
+"""Seconds from one look at the processes to the next, in a soak of a minute or more."""
 GROWTH_MB = 1.0
 """What a process may grow by in a soak."""
 
@@ -106,6 +111,61 @@ def busy_processors(folder: Path, domain: int) -> LoadRow:
         for burner in burners:
             burner.kill()
             burner.wait()
+    return row
+
+
+MEMORY = """
+import sys, time
+held = []
+for _ in range(int(sys.argv[1])):
+    held.append(bytearray(b"1") * 2**20)
+time.sleep(float(sys.argv[2]))
+"""
+"""A program that holds so many MiB for so many seconds."""
+SPARED = 1.0
+"""GiB that it leaves."""
+
+
+def memory_pressure(folder: Path, domain: int) -> LoadRow:
+    """A program takes all free memory but a little, and gives it back."""
+    row = LoadRow("memory pressure")
+    with started("program", folder, domain) as graph:
+        free = max(64.0, psutil.virtual_memory().available / 2**20 - 1024.0 * SPARED)
+        row.figures["MiB taken"] = float(int(free))
+        subprocess.run([sys.executable, "-c", MEMORY, str(int(free)), "3.0"], check=False)
+        finished(row, graph, "program")
+    return row
+
+
+@contextmanager
+def clock_set(by: float) -> Iterator[None]:
+    """The wall clock of this computer is `by` s elsewhere. Raises PermissionError."""
+    began, passed = time.time(), time.monotonic()
+    time.clock_settime(time.CLOCK_REALTIME, began + by)
+    try:
+        yield
+    finally:
+        time.clock_settime(time.CLOCK_REALTIME, began + time.monotonic() - passed)
+
+
+def wall_clock_set(folder: Path, domain: int) -> LoadRow:
+    """An hour back, then forth; then, an hour back, the clock of the machine is killed: units notice it themselves."""
+    row = LoadRow(f"wall clock set by {CLOCK_STEP:g} s")
+    with started("program", folder / "set", domain) as graph:
+        for by in (-CLOCK_STEP, CLOCK_STEP):
+            with clock_set(by):
+                time.sleep(2.0)
+        finished(row, graph, "program")
+    with started("program", folder / "killed", domain) as graph, clock_set(-CLOCK_STEP):
+        time.sleep(1.0)
+        graph.processes["clock"].kill()
+        if not graph.wait(30.0):
+            row.problems.append("without the clock the run does not end")
+    recorded = read_recording(graph.recording)
+    row.problems += motion.problems(recorded, read_machine(str(case_of("program").machine)), ended=True)
+    silent = {event.source for event in recorded.events if event.error_id == WATCHDOG}
+    if missing := {"x", "y", "z"} - silent:
+        row.problems.append(f"no watchdog of {', '.join(sorted(missing))}")
     return row
 
 
@@ -209,7 +269,7 @@ def soak(minutes: float, folder: Path, domain: int) -> LoadRow:
             return row
         end = time.monotonic() + 60.0 * minutes
         while time.monotonic() < end and graph.running:
-            time.sleep(min(5.0, 6.0 * minutes))
+            time.sleep(min(SAMPLING, 6.0 * minutes))
             with suppress(psutil.NoSuchProcess):
                 samples.append({name: figures_of(each) for name, each in graph.processes.items()})
         finished(row, graph, "program")
@@ -225,8 +285,10 @@ def figures_of(process: psutil.Process) -> tuple[float, int, int]:
 
 
 def grown(row: LoadRow, samples: list[dict[str, tuple[float, int, int]]]) -> None:
-    """The growth from the end of the first fifth on."""
-    settled = samples[int(len(samples) * SETTLED) :]
+    """The growth from the end of the first five minutes, or fifth, on; lost blocks."""
+    settled = samples[min(int(len(samples) * SETTLED), int(SETTLING / SAMPLING)) :]
+    if row.figures.get("lost blocks"):
+        row.problems.append(f"{row.figures['lost blocks']:g} blocks were lost")
     for name in settled[0]:
         memory, handles, threads = (settled[-1][name][n] - settled[0][name][n] for n in range(3))
         row.figures[f"{name}: MB more"] = round(memory, 2)
@@ -241,11 +303,14 @@ def largest_lateness(recorded: Recorded) -> float:
     return max((float(each.values.get(LATENESS_MAX, 0.0)) for each in recorded.diagnostics), default=0.0)
 
 
-def conditions(folder: Path, *, minutes: float) -> Iterator[LoadRow]:
-    """All of them, one after another; `minutes` of the soak, 0: none."""
+def conditions(folder: Path, *, minutes: float, sets_clock: bool = False) -> Iterator[LoadRow]:
+    """All of them, one after another; `minutes` of the soak, 0: none. Raises PermissionError for the wall clock."""
     domain = free_domain(os.getpid())
     yield busy_processors(folder, domain)
+    yield memory_pressure(folder, domain)
     yield suspended(folder, domain)
+    if sets_clock:
+        yield wall_clock_set(folder, domain)
     yield company("subscribers", SUBSCRIBERS, folder, domain)
     yield company("foreign", FOREIGN_NODES, folder, domain)
     yield company("late", 1, folder, domain)

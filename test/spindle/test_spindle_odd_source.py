@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from machine_support import spindle_bench
 
 
@@ -30,3 +31,10 @@ def test_a_source_that_the_machine_does_not_have_gets_none() -> None:
     bench.refused("start", direction="cw", speed_rpm=-1.0, source="channel")
     bench.run(10)
     assert [refusal.source for refusal in bench.last.refused] == ["channel"]
+
+
+@pytest.mark.parametrize("command", ["follow_path", "leave_path"])
+def test_a_path_without_a_source_is_refused(command: str) -> None:
+    """Found by `bench.fuzz command`."""
+    text = f"P-ERR-22001 spindle s: {command} refused: argument 'source' is missing; nothing was changed"
+    assert spindle_bench().refused(command) == text
