@@ -7,14 +7,24 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, fields
 from typing import Any, Protocol
 
-from cnc_ptp.protocol.blocks import ChannelBlock, CommandRecord, CycleBlock, Event, HandshakeRequest
+from cnc_ptp.protocol.blocks import (
+    ChannelBlock,
+    ChannelOffsets,
+    CommandRecord,
+    CycleBlock,
+    Event,
+    HandshakeRequest,
+)
 from cnc_ptp.web.faces.alarms import Alarms, event_fields
-from cnc_ptp.web.faces.face import Face, State
+from cnc_ptp.web.faces.face import Face, Past, State
 from cnc_ptp.web.faces.offset_table import OffsetTable
 from cnc_ptp.web.faces.program_watch import ProgramWatch
 from cnc_ptp.web.faces.switches import Switches
 from cnc_ptp.web.faces.targets import Targets
 from cnc_ptp.web.protocol import difference
+
+EVENTS_KEPT = 500
+"""Events that a page keeps (static/store.js)."""
 
 
 class Looking(Protocol):
@@ -57,6 +67,8 @@ class View:
         """What has come since the last time, to all pages; whether a channel has another program."""
         face = self.face
         units = face.state()  # before the news: a program that it names has its command among them
+        if (past := face.past()) is not None:
+            self._tell_past(past, face.cycle_time)
         news = face.news()
         for event in news.events:
             self._tell_event(event, face.cycle_time)
@@ -126,11 +138,26 @@ class View:
                 if request["channel"] == channel and request["cycle"] < block.first_cycle:
                     self._end_handshake(number)
 
+    def _tell_past(self, past: Past, cycle_time: float) -> None:
+        """In place of all that pages know: theirs is another time of the recording now."""
+        self.alarms.begin_again(past.events, cycle_time)
+        self.offsets.clear()
+        for table in self.tables.values():
+            table.begin_again()
+        for channel, offsets in past.offsets:
+            self._take_offsets(channel, offsets)
+        events = [event_fields(event, cycle_time) for event in past.events[-EVENTS_KEPT:]]
+        known = {"events": events, "alarms": self.alarms.list(), "offsets": self.offsets}
+        self.to_all({"type": "past", **known, "nodes": [*past.diagnostics]})
+
     def _tell_offsets(self, channel: str, block: ChannelBlock) -> None:
         for offsets in block.offsets:
-            self.tables[channel].take_active(offsets)
-            self.offsets[channel] = {"channel": channel, **asdict(offsets)}
+            self._take_offsets(channel, offsets)
             self.to_all({"type": "offsets", **self.offsets[channel]})
+
+    def _take_offsets(self, channel: str, offsets: ChannelOffsets) -> None:
+        self.tables[channel].take_active(offsets)
+        self.offsets[channel] = {"channel": channel, **asdict(offsets)}
 
 
 def request_fields(request: HandshakeRequest) -> dict[str, Any]:

@@ -31,7 +31,7 @@ class Bridge:
     def poll(self, _type, _topic, record, _quality):
         self.record = record
 
-    def create_timer(self, _period, watch):
+    def create_timer(self, _period, watch, clock):
         self.watch = watch
 
     def create_service(self, _type, name, callback):

@@ -8,10 +8,20 @@ from web_support import MILL, site
 
 from cnc_ptp.client import Machine
 from cnc_ptp.commands.run.web import connector
+from cnc_ptp.errors import CncError
+from cnc_ptp.protocol.blocks import Event
 from cnc_ptp.recording.opened import OpenRecording
+from cnc_ptp.recording.writer import Recording
+from cnc_ptp.web.faces import recorded_file
+from cnc_ptp.web.faces.alarms import KEPT, Alarms
 from cnc_ptp.web.faces.program_watch import Load
 from cnc_ptp.web.faces.recorded_face import recorded_face
-from cnc_ptp.web.faces.scope import HEAD
+from cnc_ptp.web.faces.recorded_file import RecordedFile
+from cnc_ptp.web.faces.scope import HEAD, Signal
+from cnc_ptp.wire.layout import Header, encode
+from cnc_ptp.wire.schemas import parse_schema, schema_text
+
+DIAGNOSTICS = "diagnostic_msgs/msg/DiagnosticArray"
 
 
 @pytest.fixture(scope="module")
@@ -21,6 +31,39 @@ def recording(tmp_path_factory):
         m.channel.load("part.nc", text="G1 X10 F600\nX20\nM30\n")
         m.channel.start().wait()
     return str(file)
+
+
+@pytest.fixture(scope="module")
+def failed(tmp_path_factory):
+    """Two programs that fail, one after the other."""
+    file = tmp_path_factory.mktemp("failed") / "run.mcap"
+    with Machine.offline(MILL, record=file) as m:
+        for target in (10, 20):
+            job = m.channel.run("part.nc", text=f"N10 G1 X{target} F6000\nN20 G1 X=V.A.ACT_POS.X*100\nM30\n")
+            with pytest.raises(CncError, match="line 2 "):
+                job.wait()
+            m.run_for(0.2)
+            m.channel.reset().wait()
+        m.run_for(0.2)
+    return str(file)
+
+
+def events_of(file):
+    """Time in s, severity and text of all events, in the order of their cycles."""
+    with OpenRecording(file) as opened:
+        columns = opened.columns("/events", "cycle", "severity", "text")
+        rows = zip(*(columns[name].tolist() for name in ("cycle", "severity", "text")), strict=True)
+        return [(cycle * 1e-3, severity, text) for cycle, severity, text in sorted(rows, key=lambda row: row[0])]
+
+
+def alarms_by(file, time):
+    """Texts of the warnings and errors that had come by a time in s."""
+    return [text for at, severity, text in events_of(file) if severity > 0 and at <= time + 1e-9]
+
+
+def shown(past):
+    """Number and text of each alarm."""
+    return [(alarm["alarm"], alarm["text"]) for alarm in past["alarms"]]
 
 
 def test_a_page_looks_at_any_time_and_plays(recording):
@@ -70,6 +113,191 @@ def test_its_samples_are_not_rounded(recording):
             assert samples.tobytes() == wanted.tobytes() and len(samples) >= 500
             assert np.frombuffer(short, "<f4", offset=HEAD.size).tobytes() == wanted.astype("<f4").tobytes()
             assert (wanted != wanted.astype("<f4")).any()
+
+    asyncio.run(story())
+
+
+def frame_of(data):
+    """Cycles between two samples, cycle of the first one, and the samples by signal."""
+    step, low, high, signals, samples = HEAD.unpack_from(data)
+    return step, low + (high << 32), np.frombuffer(data, "<f8", offset=HEAD.size).reshape(signals, samples)
+
+
+def test_samples_are_of_every_cycle_as_far_as_is_asked(recording):
+    """More than are asked for are thinned, and the frame says which cycles they are of."""
+
+    async def story():
+        async with site(connect=lambda: recorded_face(recording)) as here:
+            await here.page(commands=False)
+
+            async def read(**query):
+                answer = await here.client.get("/api/recorded", params={"signals": "x.set_velocity,y.state", **query})
+                return frame_of(await answer.read())
+
+            with OpenRecording(recording) as opened:
+                cycles, wanted = (
+                    opened.columns("/x/state", name, start=0.1005)[name] for name in ("cycle", "set_velocity")
+                )
+            step, first, whole = await read(**{"from": "0.1005", "points": "100000"})
+            assert (step, first, len(whole[0])) == (1, int(cycles[0]), len(cycles)) and first == 101
+            assert whole[0].tobytes() == wanted.tobytes()
+            step, first, some = await read(**{"from": "0.1005", "points": "700"})
+            assert step == -(-len(cycles) // 700) > 1 and first == 101
+            assert some.tobytes() == whole[:, ::step].tobytes()
+
+    asyncio.run(story())
+
+
+def test_an_answer_has_a_limit(recording, monkeypatch):
+    monkeypatch.setattr(recorded_file, "MOST_SAMPLES", 1000)
+    file = RecordedFile(recording)
+    signals = [Signal("x", "set_position"), Signal("y", "set_position")]
+    step, first, some = frame_of(file.samples(signals, 0.0, 1.0, 10**9, bits=64))
+    assert (step, first, some.shape) == (3, 0, (2, 334))
+    file.close()
+
+
+def test_a_cycle_that_a_unit_does_not_have_is_a_gap(recording, monkeypatch):
+    """The samples of other units stay beside those of their own cycles."""
+    file = RecordedFile(recording)
+    read = file._recording.columns
+
+    def without_some(topic, *names, **times):
+        found = read(topic, *names, **times)
+        kept = (found["cycle"] < 100) | (found["cycle"] >= 130) | (topic != "/x/state")
+        return {name: found[name][kept] for name in names}
+
+    signals = [Signal("x", "set_position"), Signal("y", "set_position"), Signal("x", "set_velocity")]
+    whole = frame_of(file.samples(signals, 0.05, 0.2, 1000, bits=64))[2]
+    monkeypatch.setattr(file._recording, "columns", without_some)
+    step, first, samples = frame_of(file.samples(signals, 0.05, 0.2, 1000, bits=64))
+    assert (step, first, samples.shape) == (1, 50, (3, 151))
+    assert np.isnan(samples[0]).nonzero()[0].tolist() == [*range(50, 80)]
+    assert samples[1].tobytes() == whole[1].tobytes()
+    assert samples[2, 80:].tobytes() == whole[2, 80:].tobytes()
+    file.close()
+
+
+def test_a_page_has_the_alarms_of_its_time(failed):
+    """Those up to it, each once and with the same number, wherever the page has looked before."""
+
+    async def story():
+        async with site(connect=lambda: recorded_face(failed)) as here:
+            page = await here.page(commands=False)
+            end = here.hub.face.end
+            every, errors = events_of(failed), [at for at, severity, _ in events_of(failed) if severity == 2]
+            whole = [*enumerate(alarms_by(failed, end), 1)]
+            begin = await page.wait_for("past")
+            assert shown(begin) == [*enumerate(alarms_by(failed, 0.0), 1)] and len(errors) >= 2
+
+            assert (await page.ask("seek", time=end))["time"] == end
+            past = await page.wait_for("past")
+            assert shown(past) == whole
+            assert [event["text"] for event in past["events"]] == [text for _, _, text in every]
+
+            between = errors[-1] - 0.01
+            assert (await page.ask("seek", time=between))["ok"]
+            early = shown(await page.wait_for("past"))
+            assert early == [*enumerate(alarms_by(failed, between), 1)] and 0 < len(early) < len(whole)
+
+            assert (await page.ask("play", speed=20))["ok"]
+            last = await page.wait_for("event", lambda event: event.get("alarm") == len(whole))
+            told = [message for message in page.waiting if message["type"] == "event" and "alarm" in message]
+            assert early + shown({"alarms": [*told, last]}) == whole
+
+            assert (await page.ask("play", speed=0.0))["ok"]
+            assert (await page.ask("seek", time=0.0))["ok"]
+            assert shown(await page.wait_for("past")) == shown(begin)
+
+    asyncio.run(story())
+
+
+def test_an_alarm_stays_acknowledged_where_it_is_seen_again(failed):
+    async def story():
+        async with site(connect=lambda: recorded_face(failed)) as here:
+            page = await here.page(commands=False)
+            await page.wait_for("past")
+            await page.ask("seek", time=here.hub.face.end)
+            first, second = (await page.wait_for("past"))["alarms"][:2]
+            assert (await page.ask("acknowledge", alarm=first["alarm"]))["ok"]
+            for time in (0.0, here.hub.face.end):
+                await page.ask("seek", time=time)
+                past = await page.wait_for("past")
+            again = past["alarms"][:2]
+            assert again[0] == {**first, "acknowledged": True, "acknowledged_by": "web"}
+            assert again[1] == second and not second["acknowledged"]
+
+    asyncio.run(story())
+
+
+def test_of_many_alarms_the_newest_are_known():
+    alarms = Alarms()
+    events = [Event(cycle, "x", 2, 0, f"error {cycle}") for cycle in range(KEPT + 5)]
+    alarms.begin_again([*events, Event(9999, "x", 0, 0, "no alarm")], 1e-3)
+    known = alarms.list()
+    assert (len(known), known[0]["alarm"], known[0]["text"]) == (KEPT, 6, "error 5")
+    assert (known[-1]["alarm"], known[-1]["text"]) == (KEPT + 5, f"error {KEPT + 4}")
+    alarms.begin_again(events[:2], 1e-3)
+    assert [(alarm["alarm"], alarm["text"]) for alarm in alarms.list()] == [(1, "error 0"), (2, "error 1")]
+
+
+def test_a_page_has_the_offsets_of_its_time(tmp_path):
+    file = tmp_path / "run.mcap"
+    with Machine.offline(MILL, record=file) as m:
+        m.channel.set_zero_offset(2, "X", 12.5)
+        m.run_for(0.2)
+        m.channel.load("part.nc", text="G55\nG1 X10 F600\nG54\nX10\nM30\n")  # 2.25 s, then 1.25 s
+        m.channel.start().wait()
+
+    async def story():
+        async with site(connect=lambda: recorded_face(str(file))) as here:
+            page = await here.page(commands=False)
+            await page.wait_for("past")
+            before = (await page.ask("offsets"))["offsets"]
+            for time, index in ((1.0, 2), (here.hub.face.end - 0.5, 1), (1.5, 2)):
+                await page.ask("seek", time=time)
+                active = (await page.wait_for("past"))["offsets"]["channel"]
+                assert (active["channel"], active["zero_index"]) == ("channel", index)
+                assert active["zero_offset"][0] == (12.5 if index == 2 else 0.0)
+                rows = {row["name"]: row["values"] for row in (await page.ask("offsets"))["offsets"]}
+                assert rows["G55"]["X"] == 12.5
+            await page.ask("seek", time=0.0)
+            assert (await page.wait_for("past"))["offsets"].get("channel", {}).get("zero_index") != 2
+            assert (await page.ask("offsets"))["offsets"] == before
+
+    asyncio.run(story())
+
+
+def report(name, blocks):
+    """The bytes of a message of diagnostics."""
+    values = [{"key": "blocks", "value": blocks}]
+    status = {"level": 1, "name": name, "message": "late", "hardware_id": "", "values": values}
+    schema = parse_schema(DIAGNOSTICS, schema_text(DIAGNOSTICS))
+    return encode(schema, {"header": Header(), "status": [status]})
+
+
+def test_a_page_has_the_figures_of_the_nodes_of_its_time(recording, tmp_path):
+    file = tmp_path / "run.mcap"
+    with OpenRecording(recording) as opened:
+        machine = opened.attached("machine.yaml")
+    with Recording(file, machine) as writing:
+        for time, name, blocks in ((0.5, "x", "50"), (1.5, "x", "150"), (1.6, "y", "160"), (2.4, "x", "240")):
+            writing.raw("/diagnostics", DIAGNOSTICS, report(name, blocks), round(time * 1e9))
+
+    def figures(nodes):
+        assert all((node["level"], node["text"]) == (1, "late") for node in nodes)
+        return {node["name"]: node["values"] for node in nodes}
+
+    async def story():
+        face = recorded_face(str(file))
+        assert figures(face.past().diagnostics) == {}
+        await face.seek(2.0)
+        assert figures(face.past().diagnostics) == {"x": {"blocks": "150"}, "y": {"blocks": "160"}}
+        assert face.past() is None and face.news().diagnostics == ()
+        face.play(1.0)
+        await face._play_on(0.5)
+        assert figures(face.news().diagnostics) == {"x": {"blocks": "240"}}
+        face.close()
 
     asyncio.run(story())
 
@@ -200,7 +428,7 @@ def test_seeks_while_it_plays_read_one_after_the_other(recording):
             face._windows.clear()
             await asyncio.gather(*(face.seek(time) for time in (0.2, 1.4, 0.7)))
             assert 0.7 <= face.time < 1.4
-            assert all(block.first_cycle * 1e-3 < 2.0 for block in face._windows[0]["x"])
+            assert all(block.first_cycle * 1e-3 < 2.0 for block in face._windows[0].blocks["x"])
         running.cancel()
         face.close()
 

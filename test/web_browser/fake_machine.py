@@ -75,10 +75,10 @@ COMMANDS = {
 
 
 class Fake:
-    """The machine and its pages. `points`: of the backplot; `recording`: it has been recorded."""
+    """The machine and its pages. `points`: of the backplot; `recording`: it has been recorded; `axes`: a letter each."""
 
-    def __init__(self, *, points: int = 3000, recording: bool = False) -> None:
-        self.points, self.recording = points, recording
+    def __init__(self, *, points: int = 3000, recording: bool = False, axes: str = "xyz") -> None:
+        self.points, self.recording, self.axes = points, recording, axes
         self.received: list[dict[str, Any]] = []
         self.pings: list[dict[str, Any]] = []
         self.delay = 0.0
@@ -103,7 +103,7 @@ class Fake:
             "plc": {"scenario_done": True, "run_done": False, "emergency_stop": False},
             "channel": {"state": "ready", "active": False, "line": 0, "block_number": 0, "feed": 0.0, "programmed_feed": 0.0, "override": 100.0, "distance_to_go": 0.0, "blocks_done": 0, "blocks_total": 400, "progress": 0.0, "time_left": -1.0, "job": "", "error": 0, "program": "", "file": "", "text": "", "manual": False},
             "s": {"state": "Standstill", "set_speed": 0.0, "speed": 0.0, "programmed_speed": 0.0, "set_position": 0.0, "actual_position": 0.0, "distance_to_go": 0.0, "following_error": 0.0, "override": 100.0, "gear": 1, "modes": ["stop"], "speed_reached": True, "speed_zero": True, "in_position": True, "referenced": True, "gear_change_active": False, "status_bits": 0, "master": "", "job": "", "error": 0},
-            **{name: {"state": "Standstill", "override": 100.0, "feedforward": 0.0, "set_acceleration": 0.0, "torque": 0.5, "torque_digits": 20.0, "error": 0, "status_bits": 16, "master": "", "job": ""} for name in "xyz"},
+            **{name: {"state": "Standstill", "override": 100.0, "feedforward": 0.0, "set_acceleration": 0.0, "torque": 0.5, "torque_digits": 20.0, "error": 0, "status_bits": 16, "master": "", "job": ""} for name in axes},
         }  # fmt: skip
         self.alarm = 0
         self.app = web.Application(client_max_size=10_000_000)
@@ -224,14 +224,14 @@ class Fake:
         channel = {
             "name": "channel",
             "kind": "channel",
-            "axes": [{"unit": n, "name": n.upper()} for n in "xyz"],
+            "axes": [{"unit": n, "name": n.upper()} for n in self.axes],
             "spindles": ["s"],
             "turning": False,
             "limits": {"override": 200.0},
         }
         spindle = {"name": "s", "kind": "spindle", "limits": {"speed": 12000.0, "gears": [1, 2], "override": 200.0}}
-        units = [{"name": "plc", "kind": "plc"}, channel, spindle, *(axis(n) for n in "xyz")]
-        signals = {n: [{"field": f, "unit": "mm"} for f in FIELDS] for n in "xyz"} | {
+        units = [{"name": "plc", "kind": "plc"}, channel, spindle, *(axis(n) for n in self.axes)]
+        signals = {n: [{"field": f, "unit": "mm"} for f in FIELDS] for n in self.axes} | {
             "s": [{"field": "actual_speed_rpm", "unit": "rpm"}]
         }
         machine = {
@@ -413,8 +413,8 @@ class Fake:
 
     async def _tell_state(self) -> None:
         angle = self.time * 0.5
-        places = {"x": 50 * cos(angle), "y": 50 * sin(angle), "z": -5.0}
-        for name, place in places.items():
+        places = (50 * cos(angle), 50 * sin(angle), -5.0)
+        for name, place in zip(self.axes, places, strict=False):
             self.state[name] |= {
                 "set_position": round(place, 6),
                 "actual_position": round(place - 0.004, 6),

@@ -3,7 +3,8 @@
 from itertools import pairwise
 
 import pytest
-from web_browser_support import eventually, until
+from fake_machine import Fake
+from web_browser_support import InThread, eventually, open_page, until
 
 LOST = {
     "pointerup": "() => 0",
@@ -102,6 +103,66 @@ def test_the_jog_keys_do_nothing_behind_the_help(look, fake):
     page.wait_for_timeout(200)
     page.keyboard.up("ArrowRight")
     assert jogs(fake) == []
+
+
+def test_keys_belong_to_the_axes_with_their_names_and_to_the_order_where_no_axis_has_one(look):
+    page = look()
+    found = page.evaluate(
+        """async () => {
+        const { axesOfKeys } = await import('/static/operate/jog_keys.js');
+        const of = (...names) => axesOfKeys(names.map((name) => ({ name }))).map((axis) => axis?.name ?? null);
+        return [of('x', 'z'), of('Z', 'c', 'Y', 'X'), of('b', 'y'), of('u', 'v'), of('q1', 'q2', 'q3', 'q4'), of()];
+    }"""
+    )
+    assert found == [
+        ["x", None, "z"],
+        ["X", "Y", "Z"],
+        [None, "y", None],
+        ["u", "v", None],
+        ["q1", "q2", "q3"],
+        [None, None, None],
+    ]
+
+
+def test_the_buttons_and_the_help_say_which_key_moves_which_axis(look):
+    page = look()
+    page.wait_for_selector(".jog")
+    assert page.locator(".jog").all_inner_texts() == [
+        "X − ←",
+        "X + →",
+        "Y − ↓",
+        "Y + ↑",
+        "Z − ⇟",
+        "Z + ⇞",
+    ]
+    assert page.get_attribute("[aria-label='Jog Z +']", "aria-keyshortcuts") == "PageUp"
+    assert keys_that_jog(page) == {"←, →": "X", "↓, ↑": "Y", "Page down, Page up": "Z"}
+
+
+def test_axes_with_other_names_are_jogged_in_the_order_of_the_machine(browser):
+    fake = Fake(axes="uv")
+    with InThread(fake.app) as server:
+        page = open_page(browser, server.url, command=True)
+        page.wait_for_selector(".jog")
+        assert page.locator(".jog").all_inner_texts() == ["U − ←", "U + →", "V − ↓", "V + ↑"]
+        assert keys_that_jog(page) == {"←, →": "U", "↓, ↑": "V"}
+        page.click("text=Close")
+        page.click("text=Jog keys")
+        until(page, "app.roundTrip.time < 150")
+        page.keyboard.down("ArrowDown")
+        eventually(page, lambda: len(jogs(fake)) >= 3)
+        page.keyboard.up("ArrowDown")
+        eventually(page, lambda: fake.has_received(type="jog_stop", axis="v"))
+        assert {(message["axis"], message["velocity"]) for message in jogs(fake)} == {("v", -16.6)}
+        assert page.complaints.texts == []
+        page.close()
+
+
+def keys_that_jog(page):
+    """Keys -> axis, as the help says it."""
+    page.keyboard.press("F1")
+    rows = page.locator("dialog.help tr:has-text('jog keys are on')").all()
+    return {row.locator("kbd").inner_text(): row.locator("td").inner_text().split()[1] for row in rows}
 
 
 def test_a_jog_is_refused_where_messages_take_too_long(look, fake):
@@ -280,6 +341,31 @@ def test_a_handshake_is_acknowledged(look, server, fake):
     page.click(".handshakes >> text=Acknowledge")
     eventually(page, lambda: fake.has_received(unit="plc", command="acknowledge", arguments={"id": 7}))
     page.wait_for_selector(".handshakes li", state="detached")
+
+
+def test_functions_are_acknowledged_by_hand_when_the_plc_has_accepted_it(look, server, fake):
+    page = look(command=True)
+    box = page.locator("label:has-text('Acknowledge functions by hand') input")
+    assert not box.is_checked()
+    box.click()
+    eventually(page, box.is_checked)
+    assert commands(fake) == [("auto_acknowledge", {"enabled": False})]
+    text = "plc plc: auto_acknowledge: this page does not hold the command; nothing was done"
+    fake.refusals["command"] = {"number": 26236, "text": text, "cause": "", "remedy": ""}
+    box.click()
+    page.wait_for_selector(f".notice.error >> text={text}")
+    assert box.is_checked()
+    fake.refusals.clear()
+    box.click()
+    eventually(page, lambda: not box.is_checked())
+    assert commands(fake)[-1] == ("auto_acknowledge", {"enabled": True})
+    server.do(fake.tell({"type": "state", "time": fake.time, "units": {"plc": {"auto_acknowledge": False}}}))
+    eventually(page, box.is_checked)  # a machine that says it is believed
+
+
+def test_without_the_command_nobody_decides_who_acknowledges(look):
+    page = look()
+    assert page.locator("label:has-text('Acknowledge functions by hand') input").is_disabled()
 
 
 def test_positions_of_work_and_machine(look, fake):

@@ -1,12 +1,16 @@
 """Pages of a recording, on the true server: each page has a time of its own."""
 
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
+import numpy as np
 import pytest
 from web_browser_support import InThread, open_page, until
 from web_support import EXAMPLES, MILL
 
 from cnc_ptp.client import Machine
+from cnc_ptp.errors import CncError
+from cnc_ptp.recording.opened import OpenRecording
 from cnc_ptp.web.access.access import Access
 from cnc_ptp.web.access.guard import Names
 from cnc_ptp.web.faces.recorded_face import recorded_face
@@ -17,22 +21,46 @@ from cnc_ptp.web.server import Server
 SLIDER = "document.querySelector('.recording-bar input')"
 
 
-@pytest.fixture(scope="module")
-def recording(tmp_path_factory):
-    file = tmp_path_factory.mktemp("recorded") / "run.mcap"
+def recorded(file, run):
+    """The recording of a run of the mill, made in another thread: in this one the loop of the browser runs."""
 
     def record():
         with Machine.offline(MILL, record=file) as m:
-            m.channel.load("part.nc", text="G1 X40 F240\nM30\n")  # 10 s
-            m.channel.start().wait(timeout=60)
+            run(m)
 
-    with ThreadPoolExecutor(1) as thread:  # in this one the loop of the browser runs
+    with ThreadPoolExecutor(1) as thread:
         thread.submit(record).result()
     return str(file)
 
 
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory):
+    def run(m):
+        m.channel.load("part.nc", text="G1 X40 F240\nM30\n")  # 10 s
+        m.channel.start().wait(timeout=60)
+
+    return recorded(tmp_path_factory.mktemp("recorded") / "run.mcap", run)
+
+
+@pytest.fixture(scope="module")
+def failed(tmp_path_factory):
+    """Two programs that fail, one after the other."""
+
+    def run(m):
+        for target in (10, 20):
+            job = m.channel.run("part.nc", text=f"N10 G1 X{target} F6000\nN20 G1 X=V.A.ACT_POS.X*100\nM30\n")
+            with pytest.raises(CncError, match="line 2 "):
+                job.wait()
+            m.run_for(0.2)
+            m.channel.reset().wait()
+
+    return recorded(tmp_path_factory.mktemp("failed") / "run.mcap", run)
+
+
 @pytest.fixture
-def look_at(browser, recording):
+def look_at(browser, request):
+    """Opens pages of a recording, which a test may choose."""
+    recording = request.getfixturevalue(getattr(request, "param", "recording"))
     hub = Hub(lambda: recorded_face(recording), name="run", folder=ProgramFolder(EXAMPLES))
     with InThread(Server(hub, Access(None), Names()).app) as server:
         pages = []
@@ -108,3 +136,86 @@ def test_the_backplot_is_that_of_the_program_of_its_time(look_at):
     seek(page, 5.0)
     page.wait_for_selector("[data-ms]")
     page.wait_for_selector("text=1 segments")
+
+
+def columns(file, *names, **times):
+    """Fields of axis x, as the recording has them."""
+    with OpenRecording(file) as opened:
+        found = opened.columns("/x/state", *names, **times)
+        return [found[name] for name in names]
+
+
+def test_the_scope_has_every_cycle_of_a_long_window(look_at, recording):
+    page = look_at("scope")
+    page.select_option("label:text-is('Window') + select", "10")
+    seek(page, 5.0)
+    until(page, "document.querySelector('main').innerText.includes('10001 samples')")
+    assert "one of every" not in page.inner_text("main")
+    with page.expect_download() as download:
+        page.click("text=Export CSV")
+    lines = Path(download.value.path()).read_text(encoding="utf-8").splitlines()
+    assert lines[0] == "cycle,time,x.set_velocity,x.following_error"
+    rows = np.array([[float(text) for text in line.split(",")] for line in lines[1:]])
+    cycles, velocity, error = columns(recording, "cycle", "set_velocity", "following_error", start=0.0, end=10.0)
+    assert len(rows) == 10_000
+    assert rows[:, 0].tolist() == cycles[1:].tolist()
+    assert np.abs(rows[:, 1] - rows[:, 0] * 1e-3).max() < 1e-9
+    assert (rows[:, 2:] == np.column_stack([velocity, error])[1:]).all()
+
+
+def test_a_thinned_window_says_so_and_keeps_its_cycles(look_at, recording):
+    """The ring is made so small here that the window does not fit."""
+    page = look_at("scope")
+    until(page, "document.querySelector('main').innerText.includes('2001 samples')")
+    page.evaluate(
+        """async () => {
+        const { Ring } = await import("/static/scope/samples.js");
+        Ring.prototype.clear = function () { Object.assign(this, { capacity: 600, end: 0, length: 0, lost: 0 }); };
+    }"""
+    )
+    seek(page, 2.5)
+    seek(page, 3.002)
+    until(page, "document.querySelector('main').innerText.includes('501 samples, one of every 4 cycles')")
+    page.click("button:text-is('Freeze')")
+    with page.expect_download() as download:
+        page.click("text=Export CSV")
+    lines = Path(download.value.path()).read_text(encoding="utf-8").splitlines()
+    rows = np.array([[float(text) for text in line.split(",")] for line in lines[1:]])
+    cycles, velocity = columns(recording, "cycle", "set_velocity", start=2.002, end=4.002)
+    assert rows[:, 0].tolist() == cycles[4::4].tolist()
+    assert np.abs(rows[:, 1] - rows[:, 0] * 1e-3).max() < 1e-9
+    assert (rows[:, 2] == velocity[4::4]).all()
+
+
+ALARMS = "app.store.alarms.map(({ alarm, text }) => [alarm, text])"
+
+
+@pytest.mark.parametrize("look_at", ["failed"], indirect=True)
+def test_alarms_are_those_of_the_time_that_is_shown(look_at):
+    page = look_at("alarms")
+    end = page.evaluate("app.store.machine.end")
+    cards, rows = page.locator(".alarm"), page.locator(".events tbody tr")
+    assert page.inner_text(".alarm-count") == "No alarms"
+    page.evaluate(f"() => {{ {SLIDER}.value = {end}; {SLIDER}.dispatchEvent(new Event('change')); }}")
+    page.wait_for_selector(".alarm-count[data-kind=bad]")
+    whole = page.evaluate(ALARMS)
+    assert [number for number, _ in whole] == [*range(1, len(whole) + 1)] and len(whole) >= 2
+    assert cards.count() == len(whole) and page.inner_text(".alarm-count") == f"{len(whole)} alarms"
+    events = rows.count()
+    assert events >= len(whole)
+
+    last = page.evaluate("app.store.alarms.findLast(({ severity }) => severity === 'error').time")
+    seek(page, round(last - 0.01, 3))
+    until(page, f"app.store.alarms.length < {len(whole)}")
+    early = page.evaluate(ALARMS)
+    assert early == whole[: len(early)] and cards.count() == len(early) >= 1
+    assert rows.count() < events
+    page.click("button:text-is('Play')")
+    until(page, f"Math.abs(app.store.time - {end}) < 1e-3")
+    page.wait_for_selector("button:text-is('Play')")
+    assert page.evaluate(ALARMS) == whole
+    assert (cards.count(), rows.count()) == (len(whole), events)
+
+    seek(page, 0)
+    page.wait_for_selector(".alarm-count[data-kind=off]")
+    assert cards.count() == 0 and page.inner_text(".alarm-count") == "No alarms"

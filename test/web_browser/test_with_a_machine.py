@@ -7,7 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from web_browser_support import PATIENCE, InThread, open_page, until
+from web_browser_support import PATIENCE, PHONE, InThread, eventually, open_page, until
 from web_support import EXAMPLES, MILL, ROOT, waiting_mill
 
 from cnc_ptp.parameters import read_machine
@@ -37,6 +37,12 @@ def mill(browser, programs):
 @pytest.fixture
 def lathe(browser, programs):
     yield from pages_of(browser, programs, str(ROOT / "config" / "lathe.yaml"))
+
+
+@pytest.fixture
+def two_channels(browser, programs):
+    """channel1 has X, channel2 has Y."""
+    yield from pages_of(browser, programs, str(ROOT / "examples" / "spindles" / "two_channels.yaml"))
 
 
 @pytest.fixture
@@ -201,6 +207,26 @@ def test_the_backplot_of_a_program(mill):
     page.wait_for_selector("text=/[0-9,]+ segments/")
 
 
+def test_arrow_keys_tilt_the_backplot_up_to_the_view_from_above(mill):
+    page = mill("watch")
+    page.wait_for_selector("text=No program is loaded.")
+    height = "document.querySelector('.backplot').scene._camera.position.z"
+    before = page.evaluate(height)
+    page.focus("canvas")
+    page.keyboard.press("ArrowUp")
+    assert page.evaluate(height) > before
+    for _ in range(2):
+        page.keyboard.press("ArrowDown")
+    assert page.evaluate(height) < before
+    for _ in range(20):
+        page.keyboard.press("ArrowUp")
+    angle = """() => {
+        const { _camera, _controls } = document.querySelector('.backplot').scene;
+        return _camera.position.clone().sub(_controls.target).angleTo(_camera.up) * 180 / Math.PI;
+    }"""
+    assert abs(page.evaluate(angle) - 1) < 0.01
+
+
 def test_an_upload_asks_before_it_replaces(mill, programs):
     page = mill()
     asked = []
@@ -269,13 +295,33 @@ def test_the_circle_test_draws_its_deviations(mill):
     assert abs(radius - 5) < 0.05
 
 
+def acknowledge_by_hand(page, on=True):
+    """The box shows it when the PLC has accepted it."""
+    box = page.locator("label:has-text('Acknowledge functions by hand') input")
+    assert box.is_checked() is not on
+    box.click()
+    eventually(page, lambda: box.is_checked() is on)
+
+
+def test_what_waits_is_acknowledged_when_the_plc_does_it_automatically_again(waiting, programs):
+    (programs / "tool.nc").write_text("%TOOL\nN10 M6\nN20 G1 X2 F6000\nN30 M30\n", encoding="utf-8")
+    page = waiting()
+    acknowledge_by_hand(page)
+    load(page, "tool.nc")
+    page.click("button.primary >> text=Start")
+    page.wait_for_selector(".handshakes >> text=M6")
+    acknowledge_by_hand(page, on=False)
+    page.wait_for_selector(".handshakes li", state="detached")
+    until(page, "Math.abs(app.store.units.x.set_position - 2) < 1e-9 && !app.store.units.channel.active")
+
+
 @pytest.mark.parametrize(
     ("function", "shown"), [("M6", "M6"), ("M3 S500", "M3 500 (s)"), ("H12", "H12")], ids=["M", "spindle", "H"]
 )
 def test_a_program_waits_for_somebody_who_acknowledges(waiting, programs, function, shown):
     (programs / "tool.nc").write_text(f"%TOOL\nN10 {function}\nN20 G1 X2 F6000\nN30 M30\n", encoding="utf-8")
     page, other = waiting(), waiting(command=False)
-    page.evaluate("() => app.command('plc', 'auto_acknowledge', { enabled: false })")
+    acknowledge_by_hand(page)
     load(page, "tool.nc")
     page.click("button.primary >> text=Start")
     for each in (page, other):
@@ -292,7 +338,7 @@ def test_a_program_waits_for_somebody_who_acknowledges(waiting, programs, functi
 def test_a_reset_withdraws_what_is_to_be_acknowledged(waiting, programs):
     (programs / "tool.nc").write_text("%TOOL\nN10 M6\nN20 G1 X2 F6000\nN30 M30\n", encoding="utf-8")
     page = waiting()
-    page.evaluate("() => app.command('plc', 'auto_acknowledge', { enabled: false })")
+    acknowledge_by_hand(page)
     load(page, "tool.nc")
     page.click("button.primary >> text=Start")
     page.wait_for_selector(".handshakes >> text=M6")
@@ -401,3 +447,88 @@ def test_a_jog_ends_when_a_commissioner_takes_the_command_over(mill):
     until(other, "app.store.holds")
     until(other, "app.store.units.x.state === 'Standstill'")
     page.mouse.up()
+
+
+def test_the_jog_keys_of_a_lathe_move_x_and_z_and_those_of_y_nothing(lathe):
+    page = lathe()
+    page.click("text=Jog keys")
+    until(page, "app.roundTrip.time < 100")
+    page.evaluate("() => { window.jogs = []; app.jogger.onChange((axis, v) => v && jogs.push([axis, Math.sign(v)])); }")
+    for key in ("ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", "PageUp", "PageDown"):
+        page.keyboard.press(key)
+    assert page.evaluate("jogs") == [["x", -1], ["x", 1], ["z", 1], ["z", -1]]
+    assert page.locator(".jog").all_inner_texts() == ["X − ←", "X + →", "Z − ⇟", "Z + ⇞"]
+
+
+def choose(page, channel):
+    page.select_option("[aria-label=Channel]", channel)
+    page.wait_for_selector(f"h2:text-is('Control {channel}')")
+
+
+def manual(page, text):
+    page.locator("[aria-label='NC text to execute']").fill(text)
+    page.locator("[aria-label='NC text to execute']").press("Enter")
+
+
+def test_the_chosen_channel_is_the_one_that_is_operated(two_channels, programs):
+    (programs / "second.nc").write_text("%SECOND\nN10 G1 Y5 F30\nN20 M30\n", encoding="utf-8")
+    page = two_channels()
+
+    def given():
+        return [(unit, command) for _, unit, command in two_channels.hub.face.users]
+
+    assert page.locator("[aria-label=Channel] option").all_inner_texts() == ["channel1", "channel2"]
+    assert page.input_value("[aria-label=Channel]") == "channel1"
+    choose(page, "channel2")
+    manual(page, "G1 Y1 F6000")
+    until(page, "Math.abs(app.store.units.y.set_position - 1) < 1e-9 && !app.store.units.channel2.active")
+    page.wait_for_selector("option:text-is('second.nc')", state="attached")
+    page.select_option("[aria-label='Load a program']", "second.nc")
+    page.wait_for_selector(".program-name >> text=second.nc")
+    page.wait_for_selector(".line >> text=N10 G1 Y5")
+    page.click("button:text-is('Start channel2')")
+    page.wait_for_selector(".pill >> text=channel2: Running")
+    page.keyboard.press("F8")
+    page.wait_for_selector("button:text-is('Resume channel2')")
+    page.wait_for_selector("button[aria-pressed=true]:text-is('Feed hold channel2')")
+    page.keyboard.press("F9")
+    page.wait_for_selector("button:text-is('Start channel2')")
+    page.keyboard.press("Control+ArrowDown")
+    until(page, "app.store.units.channel2.override === 95")
+    page.click("button:text-is('Reset channel2')")
+    until(page, "!app.store.units.channel2.active")
+    assert {unit for unit, _ in given()} == {"channel2"}
+    choose(page, "channel1")
+    page.wait_for_selector(".program-name >> text=No program is loaded")
+    assert page.locator(".offsets thead th").all_inner_texts() == ["Offset", "X", "Teach"]
+    manual(page, "G1 X2 F6000")
+    until(page, "Math.abs(app.store.units.x.set_position - 2) < 1e-9")
+    assert given()[-1] == ("channel1", "mdi")
+    assert page.evaluate("app.store.units.channel1.override") == 100
+
+
+def test_the_choice_of_a_channel_is_kept_and_watched(two_channels, programs):
+    (programs / "second.nc").write_text("%SECOND\nN10 G1 Y5 F600\nN20 M30\n", encoding="utf-8")
+    page = two_channels(size=PHONE)
+    choose(page, "channel2")
+    page.wait_for_selector("option:text-is('second.nc')", state="attached")
+    page.select_option("[aria-label='Load a program']", "second.nc")
+    page.wait_for_selector(".line >> text=N10 G1 Y5")
+    assert page.evaluate("document.documentElement.scrollWidth") <= PHONE["width"]
+    assert page.inner_text("button.emergency") == "Emergency stop, all channels"
+    page.reload()
+    page.wait_for_selector("h2:text-is('Control channel2')")
+    assert page.input_value("[aria-label=Channel]") == "channel2"
+    page.keyboard.press("Alt+Digit2")
+    page.wait_for_selector("h2:text-is('Progress channel2')")
+    page.wait_for_selector("text=/[0-9,]+ segments/")
+    page.select_option("[aria-label=Channel]", "channel1")
+    page.wait_for_selector("h2:text-is('Progress channel1')")
+    page.wait_for_selector("text=No program is loaded.")
+
+
+def test_with_one_channel_there_is_nothing_to_choose(mill):
+    page = mill()
+    page.wait_for_selector("button:text-is('Feed hold')")
+    assert page.locator(".channel-choice").is_hidden()
+    assert page.inner_text("button.emergency") == "Emergency stop"

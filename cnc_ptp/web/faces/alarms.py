@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Sequence
 from typing import Any
 
 from cnc_ptp.errors import CncError
@@ -35,13 +36,30 @@ class Alarms:
     def __init__(self) -> None:
         self._alarms: deque[dict[str, Any]] = deque(maxlen=KEPT)
         self._last = 0
+        self._seen: dict[int, str] = {}
+        """Of a recording: alarm -> who has acknowledged it."""
+
+    def begin_again(self, events: Sequence[Event], cycle_time: float) -> None:
+        """Those of a recording up to another time. An alarm has its number at every time, and stays acknowledged."""
+        self._seen |= {alarm["alarm"]: alarm["acknowledged_by"] for alarm in self._alarms if alarm["acknowledged"]}
+        found = [event for event in events if event.severity != Severity.INFO]
+        self._alarms.clear()
+        self._last = max(0, len(found) - KEPT)
+        for event in found[-KEPT:]:
+            self.take(event_fields(event, cycle_time))
 
     def take(self, fields: dict[str, Any]) -> dict[str, Any] | None:
         """The alarm of an event, None for one that is none."""
         if fields["severity"] == "info":
             return None
         self._last += 1
-        alarm = {**fields, "alarm": self._last, "acknowledged": False, "acknowledged_by": ""}
+        user = self._seen.get(self._last)
+        alarm = {
+            **fields,
+            "alarm": self._last,
+            "acknowledged": user is not None,
+            "acknowledged_by": user or "",
+        }
         self._alarms.append(alarm)
         return alarm
 

@@ -10,7 +10,7 @@ from typing import Any
 from cnc_ptp.client.link import Reply
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import ParameterSet
-from cnc_ptp.protocol.blocks import CommandRecord, CycleBlock, Event, HandshakeRequest
+from cnc_ptp.protocol.blocks import ChannelOffsets, CommandRecord, CycleBlock, Event, HandshakeRequest
 from cnc_ptp.web.faces.program_watch import Load
 from cnc_ptp.web.numbers import NO_SNAPSHOT
 
@@ -28,6 +28,17 @@ class News:
     records: Sequence[CommandRecord] = ()
     diagnostics: Sequence[dict[str, Any]] = ()
     """Of nodes, newly told."""
+
+
+@dataclass(slots=True)
+class Past:
+    """What a recording has from its begin up to the time of its page."""
+
+    events: Sequence[Event]
+    offsets: Sequence[tuple[str, ChannelOffsets]]
+    """Of channels, in the order of their cycles."""
+    diagnostics: Sequence[dict[str, Any]]
+    """The last ones of each node."""
 
 
 class Face(ABC):
@@ -57,6 +68,10 @@ class Face(ABC):
     @abstractmethod
     def news(self) -> News:
         """What has come since the last call."""
+
+    def past(self) -> Past | None:
+        """All up to now, once after the page of a recording has begun to look at another time; `news` continues it."""
+        return None
 
     @abstractmethod
     async def ask(self, unit: str, command: str, arguments: Mapping[str, Any], *, user: str) -> Reply:

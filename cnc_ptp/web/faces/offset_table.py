@@ -24,8 +24,13 @@ class OffsetTable:
         tables = view.offsets
         self._axes = [axis.name for axis in view.axes]
         self._names = dict(tables.names)
+        self._given = tables.zero
+        self.begin_again()
+
+    def begin_again(self) -> None:
+        """As the parameters have them."""
         self._values: dict[int, dict[str, float | None]] = {
-            index: dict(zip(self._axes, values, strict=False)) for index, values in tables.zero.items()
+            index: dict(zip(self._axes, values, strict=False)) for index, values in self._given.items()
         }
 
     def take_record(self, record: CommandRecord) -> None:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import asyncio
-from bisect import bisect_left, bisect_right
-from collections.abc import Mapping
+from bisect import bisect_right
+from collections.abc import Iterator, Mapping
 from math import inf
 from operator import attrgetter
 from typing import Any
@@ -13,9 +13,9 @@ from cnc_ptp.client.link import Reply
 from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import CycleBlock
 from cnc_ptp.web.faces.description import describe_commands
-from cnc_ptp.web.faces.face import Face, News, State
+from cnc_ptp.web.faces.face import Face, News, Past, State
 from cnc_ptp.web.faces.program_watch import Load
-from cnc_ptp.web.faces.recorded_file import WINDOW, Blocks, RecordedFile
+from cnc_ptp.web.faces.recorded_file import WINDOW, NodeReport, RecordedFile, Window
 from cnc_ptp.web.faces.scope import signals_of
 from cnc_ptp.web.faces.unit_fields import unit_states
 from cnc_ptp.web.numbers import A_RECORDING
@@ -24,6 +24,8 @@ from cnc_ptp.web.protocol import NOTHING
 STEP = 0.02
 """Seconds between two steps of the time that is played."""
 FIRST_CYCLE, CYCLE = attrgetter("first_cycle"), attrgetter("cycle")
+NEAR = 1e-3
+"""Of a cycle: a time in s may be off by rounding."""
 FASTEST = 100.0
 """Seconds of a recording in a second."""
 
@@ -39,9 +41,11 @@ class RecordedFace(Face):
         self._faces = faces
         faces.append(self)
         self.kinds, self.sets, self.cycle_time, self.end = file.kinds, file.sets, file.cycle_time, file.end
-        self._windows: dict[int, Blocks] = {0: file.first}
+        self._windows: dict[int, Window] = {0: file.first}
         self._time = self._told = 0.0
         self._speed = 0.0
+        self._is_elsewhere = True
+        """Its page knows nothing of this time yet."""
         self._shown: tuple[float, dict[str, Load], State] | None = None
         """Time, programs and state of the last look: most pages of a recording stand."""
         self._turn = asyncio.Lock()
@@ -72,14 +76,18 @@ class RecordedFace(Face):
         wanted = min(max(0.0, time), self.end)
         async with self._turn:
             await self._have(wanted)
-            self._time = self._told = wanted
+            self._jump(wanted)
 
     def play(self, speed: float) -> None:
         """Seconds of the recording in a second; 0 stops it."""
         self._speed = min(max(0.0, speed), FASTEST)
         if self._speed and self._time >= self.end:
-            self._time = self._told = 0.0
+            self._jump(0.0)
             self._windows[0] = self.file.first
+
+    def _jump(self, time: float) -> None:
+        self._time = self._told = time
+        self._is_elsewhere = True
 
     async def run(self) -> None:
         """Plays the faces of all pages."""
@@ -103,13 +111,14 @@ class RecordedFace(Face):
                 self._speed = 0.0
 
     async def _have(self, time: float) -> None:
-        """The windows of a time and of what follows are there; those that nobody looks at again are left."""
+        """The windows around a time are there; those that nobody looks at again are left."""
         number, told = int(time / WINDOW), int(self._told / WINDOW)
-        for needed in (number, number + 1):
+        around = range(max(0, number - 1), number + 2)
+        for needed in around:
             if needed not in self._windows and needed * WINDOW <= self.end:
                 self._windows[needed] = await self.file.window(needed)
-        kept = {int(self._time / WINDOW), number, number + 1, *range(told, number)}
-        self._windows = {each: blocks for each, blocks in self._windows.items() if each in kept}
+        kept = {int(self._time / WINDOW), *around, *range(told, number)}
+        self._windows = {each: window for each, window in self._windows.items() if each in kept}
 
     # what its page sees
 
@@ -135,7 +144,8 @@ class RecordedFace(Face):
         return states
 
     def _block_at(self, unit: str) -> CycleBlock | None:
-        blocks = self._windows.get(int(self._time / WINDOW), {}).get(unit, [])
+        window = self._windows.get(int(self._time / WINDOW))
+        blocks = window.blocks[unit] if window else []
         if not blocks:
             return None
         after = bisect_right(blocks, round(self._time / self.cycle_time), key=FIRST_CYCLE)
@@ -148,25 +158,43 @@ class RecordedFace(Face):
         until = bisect_right(self.file.programs, cycle, key=lambda program: program[0])
         return {channel: load for _, channel, load in self.file.programs[:until]}
 
+    def past(self) -> Past | None:
+        if not self._is_elsewhere:
+            return None
+        self._is_elsewhere, self._told = False, self._time
+        until = self._time / self.cycle_time + self.file.parameters.block_cycles  # those of a block come with its begin
+        offsets = bisect_right(self.file.offsets, until, key=lambda each: each[1].cycle)
+        lately = (int(self._time / WINDOW) - 1) * WINDOW  # each node tells once a second
+        last = {report.fields["name"]: report.fields for report in self._reports(lately, self._time)}
+        return Past(self.file.events[: self._events_by(self._time)], self.file.offsets[:offsets], [*last.values()])
+
     def news(self) -> News:
-        begin, end = self._told / self.cycle_time, self._time / self.cycle_time
+        begin, end = self._told, self._time
         self._told = self._time
         if end <= begin:
             return News()
-        windows = [
-            self._windows.get(number, {})
-            for number in range(int(begin * self.cycle_time / WINDOW), int(self._time / WINDOW) + 1)
-        ]
-        blocks = [
-            (unit, block)
-            for window in windows
-            for unit, found in window.items()
-            for block in found
-            if begin <= block.first_cycle < end
-        ]
-        events = self.file.events
-        told = slice(*(bisect_left(events, cycle, key=CYCLE) for cycle in (begin, end)))
-        return News(events[told], blocks=blocks)
+        events = self.file.events[self._events_by(begin) : self._events_by(end)]
+        diagnostics = [report.fields for report in self._reports(begin, end)]
+        return News(events, blocks=[*self._blocks(begin, end)], diagnostics=diagnostics)
+
+    def _events_by(self, time: float) -> int:
+        """How many events have come by a time; at the end all, though its last digits be lost."""
+        if time >= self.end:
+            return len(self.file.events)
+        return bisect_right(self.file.events, time / self.cycle_time + NEAR, key=CYCLE)
+
+    def _reports(self, begin: float, end: float) -> Iterator[NodeReport]:
+        """Of the windows that are there, behind `begin` and up to `end`."""
+        for _, window in sorted(self._windows.items()):
+            yield from (report for report in window.reports if begin < report.time <= end)
+
+    def _blocks(self, begin: float, end: float) -> Iterator[tuple[str, CycleBlock]]:
+        """Those that begin in that time."""
+        first, behind = begin / self.cycle_time, end / self.cycle_time
+        for number in range(int(begin / WINDOW), int(end / WINDOW) + 1):
+            blocks = self._windows[number].blocks if number in self._windows else {}
+            for unit, found in blocks.items():
+                yield from ((unit, block) for block in found if first <= block.first_cycle < behind)
 
     async def ask(self, unit: str, command: str, arguments: Mapping[str, Any], *, user: str) -> Reply:
         raise is_recording(f"{unit}: {command}")

@@ -6,31 +6,50 @@ import asyncio
 import json
 from collections import OrderedDict
 from collections.abc import Mapping, Sequence
+from dataclasses import fields
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO, NamedTuple
 
 import numpy as np
 from mcap.reader import make_reader
+from mcap_ros2.decoder import DecoderFactory
 
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes.topics import BLOCK_CLASSES
 from cnc_ptp.parameters import load_machine
-from cnc_ptp.protocol.blocks import CycleBlock, Event
+from cnc_ptp.protocol.blocks import ChannelOffsets, CycleBlock, Event
 from cnc_ptp.recording.opened import OpenRecording
 from cnc_ptp.recording.parts import files_of
 from cnc_ptp.web.faces.description import describe_units
 from cnc_ptp.web.faces.program_watch import Load, load_of
-from cnc_ptp.web.faces.scope import HEAD, Signal
+from cnc_ptp.web.faces.scope import HEAD, Samples, Signal
 from cnc_ptp.wire.block_codec import codec_of
 
 WINDOW = 1.0
 """Seconds of blocks that are read together …"""
 WINDOWS_KEPT = 8
 """… and how many of them are kept for pages that come there next."""
-MOST_SAMPLES = 200_000
-"""Of a signal in one answer."""
+MOST_SAMPLES = 4_000_000
+"""Of all signals in one answer."""
 NS = 1e-9
-Blocks = Mapping[str, list[CycleBlock]]
+DIAGNOSTICS, DIAGNOSTICS_TYPE = "/diagnostics", "diagnostic_msgs/msg/DiagnosticArray"
+
+
+class NodeReport(NamedTuple):
+    """What a node has told of itself."""
+
+    time: float
+    """Seconds."""
+    fields: dict[str, Any]
+    """As pages show it."""
+
+
+class Window(NamedTuple):
+    """A piece of a recording."""
+
+    blocks: Mapping[str, list[CycleBlock]]
+    """Of each unit."""
+    reports: list[NodeReport]
 
 
 class RecordedFile:
@@ -47,14 +66,16 @@ class RecordedFile:
         self.units = describe_units(self.kinds, self.sets, self.cycle_time)
         self.end = self._end()
         self.events = self._read_events()
+        self.offsets = self._read_offsets()
         self.programs = self._read_programs()
         self._reading = asyncio.Lock()
-        self._windows: OrderedDict[int, Blocks] = OrderedDict()
+        self._decoders = [DecoderFactory() for _ in self._files]
+        self._windows: OrderedDict[int, Window] = OrderedDict()
         self.first = self._read_window(0)
         """The window of its begin."""
 
-    async def window(self, number: int) -> Blocks:
-        """Blocks of the units from `number` seconds on, for a second."""
+    async def window(self, number: int) -> Window:
+        """What there is from `number` seconds on, for a second."""
         async with self._reading:
             if number not in self._windows:
                 self._windows[number] = await asyncio.to_thread(self._read_window, number)
@@ -64,37 +85,57 @@ class RecordedFile:
             return self._windows[number]
 
     def samples(self, signals: Sequence[Signal], begin: float, end: float, points: int, *, bits: int) -> bytes:
-        """A frame as of the scope, with the cycles between two samples in place of its stream; from and to in s."""
-        columns = {}
-        for signal in signals:
-            found = self._recording.columns(f"/{signal.unit}/state", signal.field, "cycle", start=begin, end=end)
-            values = np.asarray(found[signal.field], dtype="<f8" if bits == 64 else "<f4")
-            columns[signal] = np.asarray(found["cycle"], dtype="<u8"), values
-        count = min(len(values) for _, values in columns.values())
-        step = max(1, -(-count // min(points, MOST_SAMPLES)))
-        first = int(next(iter(columns.values()))[0][0]) if count else 0
-        picked = [values[:count:step] for _, values in columns.values()]
+        """A frame as of the scope, with the cycles between two samples in place of its stream; from and to in s.
+
+        Every cycle as long as these are no more than `points` of a signal. A cycle that was not recorded is NaN.
+        """
+        columns, first = self._by_cycle(signals, begin, end)
+        count = len(columns[0])
+        step = max(1, -(-count // min(points, MOST_SAMPLES // len(columns))))
+        picked = [column[::step].astype("<f8" if bits == 64 else "<f4") for column in columns]
         head = HEAD.pack(step, first & 0xFFFFFFFF, first >> 32, len(picked), len(picked[0]))
         return head + np.concatenate(picked).tobytes()
+
+    def _by_cycle(self, signals: Sequence[Signal], begin: float, end: float) -> tuple[list[Samples], int]:
+        """A value of each signal for every cycle from the first one on, and that cycle."""
+        wanted: dict[str, list[str]] = {}
+        for signal in signals:
+            wanted.setdefault(signal.unit, []).append(signal.field)
+        read = {
+            unit: self._recording.columns(f"/{unit}/state", "cycle", *names, start=begin, end=end)
+            for unit, names in wanted.items()
+        }
+        cycles = {unit: found["cycle"].astype(np.int64) for unit, found in read.items()}
+        recorded = np.concatenate([*cycles.values()])
+        first = int(recorded.min()) if len(recorded) else 0
+        count = int(recorded.max()) - first + 1 if len(recorded) else 0
+        columns = [np.full(count, np.nan) for _ in signals]
+        for (unit, field), column in zip(signals, columns, strict=True):
+            column[cycles[unit] - first] = read[unit][field]
+        return columns, first
 
     def _end(self) -> float:
         summaries = [make_reader(file).get_summary() for file in self._files]
         last = max(summary.statistics.message_end_time for summary in summaries if summary and summary.statistics)
         return float(last - self._recording.start_ns) * NS
 
-    def _read_window(self, number: int) -> Blocks:
+    def _read_window(self, number: int) -> Window:
         begin = self._recording.start_ns + round(number * WINDOW / NS)
+        end = begin + round(WINDOW / NS)
         topics = {f"/{unit}/block": unit for unit in self.kinds}
         codecs = {unit: codec_of(BLOCK_CLASSES[kind]) for unit, kind in self.kinds.items()}
-        blocks: dict[str, list[CycleBlock]] = {unit: [] for unit in self.kinds}
-        for file in self._files:
+        window = Window({unit: [] for unit in self.kinds}, [])
+        for file, decoders in zip(self._files, self._decoders, strict=True):
             file.seek(0)
-            end = begin + round(WINDOW / NS)
-            read = make_reader(file).iter_messages([*topics], starting_at=begin, ending_before=end)
-            for _, channel, message in read:
-                unit = topics[channel.topic]
-                blocks[unit].append(codecs[unit].decode(message.data))
-        return blocks
+            read = make_reader(file).iter_messages([*topics, DIAGNOSTICS], starting_at=begin, ending_before=end)
+            for schema, channel, message in read:
+                if unit := topics.get(channel.topic):
+                    window.blocks[unit].append(codecs[unit].decode(message.data))
+                elif schema is not None and schema.name == DIAGNOSTICS_TYPE:
+                    decode: Any = decoders.decoder_for("cdr", schema)
+                    time = (message.log_time - self._recording.start_ns) * NS
+                    window.reports.extend(NodeReport(time, node_fields(each)) for each in decode(message.data).status)
+        return window
 
     def _read_events(self) -> list[Event]:
         if "/events" not in self._recording.topics:
@@ -103,6 +144,19 @@ class RecordedFile:
         columns = self._recording.columns("/events", *names)
         rows = zip(*(columns[name].tolist() for name in names), strict=True)
         return sorted((Event(*row) for row in rows), key=lambda event: event.cycle)
+
+    def _read_offsets(self) -> list[tuple[str, ChannelOffsets]]:
+        """Channel, and what lies between its programmed and machine positions from a cycle on."""
+        found: list[tuple[str, ChannelOffsets]] = []
+        for channel in (unit for unit, kind in self.kinds.items() if kind == "channel"):
+            topic = self._recording.topics.get(f"/{channel}/offsets")
+            if topic is None:
+                continue
+            names = [each.name for each in fields(ChannelOffsets) if each.name in topic.fields]
+            columns = self._recording.columns(topic.name, *names)
+            rows = zip(*(columns[name].tolist() for name in names), strict=True)
+            found += [(channel, ChannelOffsets(**dict(zip(names, row, strict=True)))) for row in rows]
+        return sorted(found, key=lambda offsets: offsets[1].cycle)
 
     def _read_programs(self) -> list[tuple[int, str, Load]]:
         """Cycle, channel, and each program that was loaded."""
@@ -122,3 +176,9 @@ class RecordedFile:
         self._recording.close()
         for file in self._files:
             file.close()
+
+
+def node_fields(status: Any) -> dict[str, Any]:
+    """Of a DiagnosticStatus, as `diagnostics` has them."""
+    values = {value.key: value.value for value in status.values}
+    return {"name": status.name, "level": status.level, "text": status.message, "values": values}

@@ -8,7 +8,15 @@ from typing import Any
 from cnc_ptp.protocol.blocks import CommandRecord, HandshakeRequest
 from cnc_ptp.protocol.unit import PLC
 
-SWITCHES = ("single_block", "optional_stop", "block_skip", "feed_hold", "suppress_override", "stop_at_program_end")
+SWITCHES = (
+    "single_block",
+    "optional_stop",
+    "block_skip",
+    "feed_hold",
+    "suppress_override",
+    "stop_at_program_end",
+    "auto_acknowledge",
+)
 EMERGENCY_STOP = "emergency_stop"
 """Of the plc; that of an axis is no switch."""
 TOOLS = {"T": "tool", "D": "tool_data"}

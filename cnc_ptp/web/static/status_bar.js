@@ -4,8 +4,10 @@ import { fixed } from "./format.js";
 import { showHelp } from "./help.js";
 import { LONGEST_FOR_JOGS } from "./round_trip.js";
 
+const WORDS = { running: "Running", hold: "Feed hold", waiting: "Waiting", stopping: "Stopping", stopped: "Stopped" };
+
 export function statusBar(app) {
-  return h("div", { class: "status" }, machine(app), command(app), alarms(app), look(), logout(app), emergency(app));
+  return h("div", { class: "status" }, machine(app), channels(app), command(app), alarms(app), look(), logout(app), emergency(app));
 }
 
 function machine(app) {
@@ -19,7 +21,7 @@ function machine(app) {
     say(name, store.machine?.name || "");
     say(time, store.machine ? `${fixed(store.time, 1)} s` : "");
   };
-  for (const topic of ["state", "link", "gone", "hello"]) store.on(topic, show);
+  for (const topic of ["state", "link", "gone", "hello", "channel"]) store.on(topic, show);
   store.on("round_trip", (ms) => {
     say(way, Number.isFinite(ms) ? `${Math.round(ms)} ms` : "");
     way.dataset.kind = Number.isFinite(ms) && ms > LONGEST_FOR_JOGS ? "warn" : "";
@@ -36,11 +38,30 @@ export function machineState(store) {
   const states = Object.values(store.units);
   if (states.some((unit) => unit.state === "ErrorStop" || unit.state === "error")) return ["bad", "Error"];
   if (store.machine.recording) return ["info", "Recording"];
-  const channel = store.state(store.channel).state;
-  const word = { running: "Running", hold: "Feed hold", waiting: "Waiting", stopping: "Stopping", stopped: "Stopped" }[channel];
-  if (word) return [channel === "running" ? "good" : "warn", word];
+  const { channel } = store;
+  const others = store.of("channel").map(({ name }) => name).filter((name) => name !== channel);
+  for (const name of [channel, ...others]) {
+    const { state } = store.state(name);
+    const word = WORDS[state];
+    if (word) return [state === "running" ? "good" : "warn", store.hasSeveralChannels ? `${name}: ${word}` : word];
+  }
   const moving = states.some((unit) => /Motion|Homing|Stopping/.test(unit.state || ""));
-  return moving ? ["good", "Moving"] : ["off", channel === "ready" ? "Ready" : "Idle"];
+  return moving ? ["good", "Moving"] : ["off", store.state(channel).state === "ready" ? "Ready" : "Idle"];
+}
+
+/** Which channel the pages show and operate, where the machine has several. */
+function channels(app) {
+  const { store } = app;
+  const choice = select([], { "aria-label": "Channel", onchange: () => store.choose(choice.value) });
+  const element = h("label", { class: "group channel-choice" }, "Channel", choice);
+  const show = () => {
+    element.hidden = !store.hasSeveralChannels;
+    choice.replaceChildren(...store.of("channel").map(({ name }) => h("option", { value: name }, name)));
+    choice.value = store.channel;
+  };
+  for (const topic of ["hello", "gone"]) store.on(topic, show);
+  show();
+  return element;
 }
 
 function command(app) {
@@ -110,9 +131,11 @@ function emergency(app) {
     app.command("plc", "emergency_stop", { enabled: true });
   }, { class: "emergency" });
   const release = button("Release stop", () => {
-    if (window.confirm("Release the emergency stop? Each unit in error needs a reset afterwards.")) app.command("plc", "emergency_stop", { enabled: false });
+    const what = store.hasSeveralChannels ? "the emergency stop of all channels" : "the emergency stop";
+    if (window.confirm(`Release ${what}? Each unit in error needs a reset afterwards.`)) app.command("plc", "emergency_stop", { enabled: false });
   });
   const show = () => {
+    say(stop, store.hasSeveralChannels ? "Emergency stop, all channels" : "Emergency stop");
     stop.hidden = Boolean(store.machine?.recording);
     stop.disabled = store.link !== "open" || !store.machine || store.role === "viewer";
     release.hidden = stop.hidden || stop.disabled || !store.inEmergency;

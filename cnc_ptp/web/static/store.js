@@ -1,6 +1,7 @@
 // What the pages know of the machine; views are notified by topic.
 
 const [KEPT_EVENTS, KEPT_ALARMS] = [500, 1000];
+const CHOSEN = "channel"; // key of the chosen channel, which each tab of the browser keeps
 
 export class Store {
   constructor() {
@@ -20,6 +21,8 @@ export class Store {
     this.programs = {};
     this.offsets = {};
     this.nodes = new Map();
+    this.byHand = false; // the last command of this page: functions are acknowledged by hand
+    this._chosen = readChosen();
     this._listeners = new Map();
   }
 
@@ -58,8 +61,32 @@ export class Store {
     return this.units[name] || {};
   }
 
+  /** The channel that the pages show and operate: the chosen one, or the first. */
   get channel() {
-    return this.of("channel")[0]?.name || "";
+    const channels = this.of("channel");
+    return (channels.find(({ name }) => name === this._chosen) || channels[0])?.name || "";
+  }
+
+  /** Another channel is shown and operated from now on. */
+  choose(channel) {
+    this._chosen = channel;
+    writeChosen(channel);
+    this.tell("channel", channel);
+  }
+
+  get hasSeveralChannels() {
+    return this.of("channel").length > 1;
+  }
+
+  /** A text about the channel, with its name where there are several. */
+  ofChannel(text) {
+    return this.hasSeveralChannels ? `${text} ${this.channel}` : text;
+  }
+
+  /** Whether functions of programs wait for somebody: as the machine says it, or as this page has commanded it. */
+  get acknowledgesByHand() {
+    const automatic = this.state("plc").auto_acknowledge;
+    return automatic === undefined ? this.byHand : !automatic;
   }
 
   /** Whether this page holds the command. */
@@ -126,5 +153,22 @@ const HANDLERS = {
   gone(store, message) {
     store.why = message;
     store.machine = null;
+    store.byHand = false; // the next machine acknowledges automatically
   },
 };
+
+function readChosen() {
+  try {
+    return sessionStorage.getItem(CHOSEN) || "";
+  } catch {
+    return ""; // storage is blocked
+  }
+}
+
+function writeChosen(channel) {
+  try {
+    sessionStorage.setItem(CHOSEN, channel);
+  } catch {
+    // storage is blocked: the choice lasts as long as the page
+  }
+}

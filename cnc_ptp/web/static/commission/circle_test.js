@@ -12,11 +12,12 @@ const LONGEST = 100; // s, so that the ring has all of it
 
 export function circleTest(app) {
   const { store } = app;
-  const names = Object.fromEntries((store.unit(store.channel)?.axes || []).map(({ unit, name }) => [name, unit]));
+  const { channel } = store; // also when another one is chosen meanwhile
+  const names = Object.fromEntries((store.unit(channel)?.axes || []).map(({ unit, name }) => [name, unit]));
   const planes = Object.keys(PLANES).filter((plane) => [...plane].every((axis) => names[axis]));
   if (planes.length === 0) return { element: h("p", { class: "muted" }, "The channel has no two of the axes X, Y, Z.") };
   const plane = select(planes);
-  const usual = store.unit(store.channel).turning ? "G18" : "G17"; // the plane is the one of the machine afterwards
+  const usual = store.unit(channel).turning ? "G18" : "G17"; // the plane is the one of the machine afterwards
   const radius = h("input", { type: "number", min: 0.1, step: "any", value: 20 });
   const feed = h("input", { type: "number", min: 1, step: "any", value: 2000 });
   const direction = select([["G3", "counter-clockwise (G3)"], ["G2", "clockwise (G2)"]]);
@@ -37,15 +38,15 @@ export function circleTest(app) {
     const time = (2 * 2 * Math.PI * size * 60) / velocity;
     if (time > LONGEST) return say(status, `Two turns take ${Math.round(time)} s, longer than ${LONGEST} s.`);
     const units = [...plane.value].map((axis) => names[axis]);
-    capture.channels = [...units.map((unit) => ({ name: `${unit}.actual_position` })), { name: `${store.channel}.path_velocity` }];
+    capture.channels = [...units.map((unit) => ({ name: `${unit}.actual_position` })), { name: `${channel}.path_velocity` }];
     await capture.subscribe();
     const [word, centre] = PLANES[plane.value];
     const turn = `${direction.value} ${centre}${size} F${velocity}`; // a full circle: no target, so G90 or G91 does not matter
     const text = `${word}\n${turn}\n${turn}\n${usual}`;
-    if (!(await app.command(store.channel, "mdi", { text }))) return null;
+    if (!(await app.command(channel, "mdi", { text }))) return null;
     say(status, "Measuring …");
     await pause(300);
-    while (!isEnded && store.state(store.channel).active) await pause(100);
+    while (!isEnded && store.state(channel).active) await pause(100);
     await pause(200);
     if (!isEnded) evaluate();
     return null;

@@ -8,20 +8,21 @@ export function controls(app) {
   const { store } = app;
   const channel = () => store.channel;
   const start = button("Start", () => startOrResume(app), { class: "primary" });
-  const hold = toggle("Feed hold", (on) => app.command(channel(), "feed_hold", { enabled: on }));
-  const reset = button("Reset", () => resetAll(app));
+  const hold = toggle(store.ofChannel("Feed hold"), (on) => app.command(channel(), "feed_hold", { enabled: on }));
+  const resets = store.hasSeveralChannels ? `Resets ${channel()} and what is in error, except axes and spindles that only other channels have` : null;
+  const reset = button(store.ofChannel("Reset"), () => resetAll(app), { title: resets });
   const switches = SWITCHES.map(([name, text]) => toggle(text, (on) => setSwitch(app, name, on), { dataset: { switch: name } }));
   const progress = h("progress", { max: 1, "aria-label": "Progress of the program" });
   const line = h("p", { class: "muted", role: "status" });
   const element = panel(
-    "Control",
+    store.ofChannel("Control"),
     h("div", { class: "row" }, h("fieldset", { class: "commands" }, h("div", { class: "row" }, start)), hold, reset, h("fieldset", { class: "commands" }, h("div", { class: "row" }, switches))),
     progress, line,
   );
 
   function update() {
     const state = store.state(channel());
-    say(start, isHeld(state) || state.state === "stopped" ? "Resume" : "Start");
+    say(start, store.ofChannel(isHeld(state) || state.state === "stopped" ? "Resume" : "Start"));
     press(hold, isHeld(state));
     for (const one of switches) if (state[one.dataset.switch] !== undefined) press(one, state[one.dataset.switch]);
     progress.value = state.progress || 0;
@@ -42,18 +43,29 @@ function startOrResume(app) {
 
 /** The server may not report it; then the button shows what was commanded. */
 async function setSwitch(app, name, enabled) {
-  const answer = await app.command(app.store.channel, name, { enabled });
+  const { channel } = app.store;
+  const answer = await app.command(channel, name, { enabled });
   const element = document.querySelector(`[data-switch="${name}"]`);
-  if (answer && element) press(element, enabled);
+  if (answer && element && channel === app.store.channel) press(element, enabled);
 }
 
-/** The channel, and every axis and spindle that is in error. */
+/** The channel, and every axis and spindle that is in error, except those that only other channels have. */
 async function resetAll(app) {
   const { store } = app;
-  if (store.channel) await app.command(store.channel, "reset");
-  for (const unit of [...store.of("axis"), ...store.of("spindle")]) {
-    if (store.state(unit.name).state === "ErrorStop") await app.command(unit.name, "reset");
+  const { channel } = store;
+  const foreign = unitsOfOthers(store, channel);
+  if (channel) await app.command(channel, "reset");
+  for (const { name } of [...store.of("axis"), ...store.of("spindle")]) {
+    if (!foreign.has(name) && store.state(name).state === "ErrorStop") await app.command(name, "reset");
   }
+}
+
+/** Axes and spindles that only other channels have. */
+function unitsOfOthers(store, channel) {
+  const members = (wanted) => store.of("channel").filter(wanted).flatMap(({ axes, spindles }) => [...axes.map(({ unit }) => unit), ...spindles]);
+  const foreign = new Set(members(({ name }) => name !== channel));
+  for (const own of members(({ name }) => name === channel)) foreign.delete(own);
+  return foreign;
 }
 
 /** F7, F8, F9, Ctrl+↑, Ctrl+↓. */

@@ -14,9 +14,9 @@ export async function homeAll(app, goesOn) {
   }
 }
 
-/** All axes, that of Z first. */
+/** All axes, that of Z first, of each channel. */
 export function homingOrder(store) {
-  const down = (store.unit(store.channel)?.axes || []).find(({ name }) => name === "Z")?.unit;
+  const down = new Set(store.of("channel").flatMap(({ axes }) => axes.filter(({ name }) => name === "Z").map(({ unit }) => unit)));
   const names = store.of("axis").map(({ name }) => name);
-  return [...names.filter((name) => name === down), ...names.filter((name) => name !== down)];
+  return [...names.filter((name) => down.has(name)), ...names.filter((name) => !down.has(name))];
 }

@@ -1,13 +1,12 @@
 // Jog of the axes: buttons that are held, and keys when they are switched on.
 import { button, field, h, panel, press, toggle } from "../dom.js";
 import { homeAll } from "./homing.js";
-
-const KEYS = { ArrowRight: [0, 1], ArrowLeft: [0, -1], ArrowUp: [1, 1], ArrowDown: [1, -1], PageUp: [2, 1], PageDown: [2, -1] };
-const CONTROLS = "input, select, textarea, [role=listbox], [role=tab]";
+import { axesOfKeys, jogKeys, PAIRS } from "./jog_keys.js";
 
 export function jogPanel(app) {
   const { store, jogger } = app;
   const axes = store.of("axis");
+  const ofKeys = axesOfKeys(axes);
   const share = h("input", { type: "range", min: 1, max: 100, value: 10 });
   const rapid = toggle("Rapid", (on) => press(rapid, on));
   const keysOn = toggle("Jog keys", (on) => press(keysOn, on));
@@ -21,9 +20,12 @@ export function jogPanel(app) {
   };
   const buttons = new Map();
   const rows = axes.map((axis) => {
+    const keys = PAIRS[ofKeys.indexOf(axis)] || [];
     const held = [-1, 1].map((sign) => {
       const text = `${axis.name.toUpperCase()} ${sign < 0 ? "−" : "+"}`;
-      const element = button(text, null, { class: "jog", "aria-label": `Jog ${text}`, dataset: { jog: axis.name, sign } });
+      const [key, label] = keys[sign < 0 ? 0 : 1] || [];
+      const element = button(text, null, { class: "jog", "aria-label": `Jog ${text}`, "aria-keyshortcuts": key, dataset: { jog: axis.name, sign } });
+      if (key) element.append(h("small", { class: "muted", title: key, "aria-hidden": "true" }, ` ${label}`));
       jogger.bind(element, axis.name, velocity(axis, sign));
       return element;
     });
@@ -42,37 +44,11 @@ export function jogPanel(app) {
       h("details", {}, h("summary", {}, "Enable, home"), h("div", { class: "row" }, button("Enable axes", power(true)), button("Disable axes", power(false)), button("Home axes", home))),
     ),
   );
-  const ends = [jogKeys(jogger, axes, velocity, () => on(keysOn)), jogger.onChange((axis, now) => mark(buttons.get(axis), now))];
+  const ends = [jogKeys(jogger, ofKeys, velocity, () => on(keysOn)), jogger.onChange((axis, now) => mark(buttons.get(axis), now))];
   ends.push(() => (isShown = false));
   return { element, end: () => ends.forEach((end) => end()) };
 }
 
 function mark(held, velocity) {
   held?.forEach((element) => element.classList.toggle("held", velocity * Number(element.dataset.sign) > 0));
-}
-
-function jogKeys(jogger, axes, velocity, isOn) {
-  const rapid = new Set(); // axes that Shift has made rapid
-  function down(event) {
-    const key = KEYS[event.key];
-    if (!key || !isOn() || document.querySelector("dialog[open]") || event.ctrlKey || event.altKey || event.metaKey || event.target.closest?.(CONTROLS)) return;
-    event.preventDefault();
-    const axis = axes[key[0]];
-    if (!axis || event.repeat) return;
-    if (event.shiftKey) rapid.add(axis.name);
-    else rapid.delete(axis.name);
-    jogger.start(axis.name, velocity(axis, key[1], event.shiftKey)());
-  }
-  function up(event) {
-    if (event.key === "Shift") rapid.forEach((name) => jogger.stop(name));
-    const key = KEYS[event.key];
-    if (key && axes[key[0]]) jogger.stop(axes[key[0]].name);
-  }
-  document.addEventListener("keydown", down);
-  document.addEventListener("keyup", up);
-  return () => {
-    jogger.stopAll();
-    document.removeEventListener("keydown", down);
-    document.removeEventListener("keyup", up);
-  };
 }

@@ -10,7 +10,7 @@ export function mdi(app) {
   const offers = h("ul", { role: "listbox", class: "offers", id: newId("offers"), "aria-label": "Completions", hidden: true });
   const input = h("input", { class: "mdi number", autocomplete: "off", spellcheck: "false", role: "combobox", "aria-autocomplete": "list", "aria-expanded": "false", "aria-controls": offers.id, "aria-label": "NC text to execute", placeholder: "G0 X10" });
   const form = h("form", { class: "row" }, input, h("button", { type: "submit" }, "Execute"));
-  const element = panel("MDI", h("fieldset", { class: "commands" }, form, offers));
+  const element = panel(app.store.ofChannel("MDI"), h("fieldset", { class: "commands" }, form, offers));
 
   form.addEventListener("submit", async (event) => {
     event.preventDefault();

@@ -12,7 +12,7 @@ export function offsets(app) {
   const head = h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Offset"), axes.map((axis) => h("th", { scope: "col" }, axis)), h("th", { scope: "col" }, "Teach")));
   const table = h("table", { class: "offsets" }, head, h("tbody", {}, rows.map((one) => one.element)));
   const active = h("p", { class: "muted" });
-  const element = panel("Zero offsets", active, h("fieldset", { class: "commands" }, h("div", { class: "scroll" }, table)));
+  const element = panel(store.ofChannel("Zero offsets"), active, h("fieldset", { class: "commands" }, h("div", { class: "scroll" }, table)));
 
   /** Taught values are not known before their offset was active. */
   async function read() {

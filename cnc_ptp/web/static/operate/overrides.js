@@ -8,7 +8,7 @@ const HELD = 800; // ms after which the slider shows the machine again
 export function overrides(app) {
   const { store } = app;
   const rows = [
-    ...store.of("channel").map((unit) => row(app, unit.name, "Feed", unit.limits?.override || 200)),
+    ...store.of("channel").map((unit) => row(app, unit.name, store.hasSeveralChannels ? `Feed ${unit.name}` : "Feed", unit.limits?.override || 200)),
     ...store.of("spindle").map((unit) => row(app, unit.name, `Spindle ${unit.name}`, unit.limits?.override || 200)),
     ...store.of("axis").map((unit) => row(app, unit.name, `PTP ${unit.name.toUpperCase()}`, unit.limits?.override || 200)),
   ];

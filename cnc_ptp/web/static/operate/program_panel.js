@@ -21,7 +21,7 @@ export function programPanel(app) {
   const title = h("span", { class: "program-name" });
   const active = h("code", { class: "active-block" });
   const element = panel(
-    "Program",
+    store.ofChannel("Program"),
     h("div", { class: "row" }, title, active),
     h("fieldset", { class: "commands" }, h("div", { class: "row" }, names, button("Upload …", () => file.click()), file, startHere)),
     h("div", { class: "row" }, find, follow), list.element,

@@ -14,12 +14,13 @@ export function readProgram(app, name) {
   return app.attempt(app.connection.http(`/api/programs/${encodeURIComponent(name)}?channel=${channel}&page=${app.store.page}`, { as: "text" }));
 }
 
-export async function loadProgram(app, name) {
-  return app.request("load", { channel: app.store.channel, name });
+export async function loadProgram(app, name, channel = app.store.channel) {
+  return app.request("load", { channel, name });
 }
 
 /** Uploads a file and loads it. */
 export async function upload(app, file) {
+  const { channel } = app.store; // also when another one is chosen meanwhile
   const path = `/api/programs?name=${encodeURIComponent(file.name)}`;
   const send = (how) => app.connection.http(path + how, { method: "POST", body: file, headers: { "Content-Type": "text/plain" } });
   let answer;
@@ -31,7 +32,7 @@ export async function upload(app, file) {
   }
   if (!answer) return false;
   app.notices.show("info", `${answer.name ?? file.name} is uploaded.`);
-  return Boolean(await loadProgram(app, answer.name ?? file.name));
+  return Boolean(await loadProgram(app, answer.name ?? file.name, channel));
 }
 
 /** Files may be dropped on an element. */
@@ -62,7 +63,8 @@ export function followProgram(app, show) {
     const text = await readProgram(app, name);
     if (mine === turn) show(text ?? "");
   };
-  const again = () => {
+  const again = ({ channel }) => {
+    if (channel !== store.channel) return;
     shown = null;
     look();
   };

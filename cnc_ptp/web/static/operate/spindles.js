@@ -71,7 +71,7 @@ function tool(app) {
   const [t, d] = [reading(list, "Tool (T)"), reading(list, "Compensation (D)")];
   const numbers = { T: "–", D: "–" };
   const noted = app.store.on("handshake", (request) => {
-    if (request.kind in numbers) numbers[request.kind] = request.number;
+    if (request.channel === app.store.channel && request.kind in numbers) numbers[request.kind] = request.number;
   });
   const update = () => {
     const state = app.store.state(app.store.channel);
@@ -80,5 +80,5 @@ function tool(app) {
   };
   const ends = [noted, app.store.on("state", update)];
   update();
-  return { element: panel("Tool", list), end: () => ends.forEach((end) => end()) };
+  return { element: panel(app.store.ofChannel("Tool"), list), end: () => ends.forEach((end) => end()) };
 }

@@ -17,10 +17,12 @@ function events(app) {
   const head = h("thead", {}, h("tr", {}, ["Time", "Source", "Event"].map((title) => h("th", { scope: "col" }, title))));
   const table = h("div", { class: "scroll events", tabIndex: 0, role: "region", "aria-label": "List of events" }, h("table", {}, head, body));
   const row = (event) => h("tr", {}, h("td", { class: "number" }, `${fixed(event.time, 3)} s`), h("td", {}, event.source), h("td", {}, event.text));
-  body.append(...[...store.events].reverse().map(row));
-  const end = store.on("event", (event) => {
+  const fill = () => body.replaceChildren(...[...store.events].reverse().map(row));
+  const add = (event) => {
     body.prepend(row(event));
     while (body.children.length > 500) body.lastChild.remove();
-  });
-  return { element: panel("Events", table), end };
+  };
+  const ends = [store.on("event", add), store.on("past", fill)];
+  fill();
+  return { element: panel("Events", table), end: () => ends.forEach((end) => end()) };
 }

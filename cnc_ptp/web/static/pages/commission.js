@@ -8,6 +8,7 @@ import { identifyView } from "../commission/identify.js";
 import { parameterBrowser } from "../commission/parameters.js";
 import { ptpTest } from "../commission/ptp_test.js";
 import { spindleCurve } from "../commission/spindle_curve.js";
+import { followChannel } from "./follow_channel.js";
 
 const AXIS = {
   Functions: ["power", "reset", "move_absolute", "move_relative", "move_modulo", "move_additive", "move_velocity", "move_superimposed", "halt_superimposed", "halt", "stop", "hold_stop", "feed_hold", "home", "emergency_stop", "new_target", "new_velocity_and_target", "set_position", "external_enable", "external_disable"],
@@ -48,7 +49,7 @@ function pagesOf(app, unit) {
   const parameters = { Parameters: place(parameterBrowser) };
   if (unit.kind === "axis") {
     const functions = Object.fromEntries(Object.entries(AXIS).map(([name, commands]) => [name, forms(commands)]));
-    return { Online: place(onlineAxis), "PTP test": place(ptpTest), ...functions, Identify: place(identifyView), "Circle test": place(circleTest), ...parameters, Drive: place(driveView) };
+    return { Online: place(onlineAxis), "PTP test": place(ptpTest), ...functions, Identify: place(identifyView), "Circle test": (body) => followChannel(app, body, place(circleTest)), ...parameters, Drive: place(driveView) };
   }
   if (unit.kind === "spindle") return { Online: place(onlineSpindle), Functions: forms(known), Curve: place(spindleCurve), ...parameters };
   return { Functions: forms(known), ...parameters };

@@ -9,8 +9,13 @@ import { overrides } from "../operate/overrides.js";
 import { positions } from "../operate/positions.js";
 import { programPanel } from "../operate/program_panel.js";
 import { spindles } from "../operate/spindles.js";
+import { followChannel } from "./follow_channel.js";
 
 export function mount(root, app) {
+  return { unmount: followChannel(app, root, () => fill(root, app)) };
+}
+
+function fill(root, app) {
   const ends = [];
   const views = { positions, jogPanel, controls, programPanel, mdi, overrides, spindles, handshakes, offsets };
   const made = {};
@@ -25,5 +30,5 @@ export function mount(root, app) {
     h("div", { class: "column wide" }, made.controls, made.handshakes, made.programPanel, made.mdi),
     h("div", { class: "column" }, made.overrides, made.spindles, made.offsets),
   );
-  return { unmount: () => ends.forEach((end) => end()) };
+  return () => ends.forEach((end) => end());
 }

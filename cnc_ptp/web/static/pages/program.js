@@ -3,8 +3,13 @@ import { button, h, panel } from "../dom.js";
 import { bytes } from "../format.js";
 import { programPanel } from "../operate/program_panel.js";
 import { listPrograms, loadProgram, takeDrops, upload } from "../operate/programs.js";
+import { followChannel } from "./follow_channel.js";
 
 export function mount(root, app) {
+  return { unmount: followChannel(app, root, () => fillPage(root, app)) };
+}
+
+function fillPage(root, app) {
   const { element, end } = programPanel(app);
   const list = h("ul", { class: "programs" });
   const folder = panel("Program folder", h("p", { class: "muted" }, "Drop a file here to upload and load it."), h("fieldset", { class: "commands" }, list));
@@ -18,5 +23,5 @@ export function mount(root, app) {
   root.append(folder, element);
   fill();
   const ends = [end, app.store.on("programs", fill)];
-  return { unmount: () => ends.forEach((one) => one()) };
+  return () => ends.forEach((one) => one());
 }

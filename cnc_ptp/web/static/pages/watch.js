@@ -4,11 +4,16 @@ import { duration } from "../format.js";
 import { backplot } from "../watch/backplot.js";
 import { alarmList } from "../watch/alarm_list.js";
 import { diagnostics } from "../watch/diagnostics.js";
+import { followChannel } from "./follow_channel.js";
 
 export function mount(root, app) {
+  return { unmount: followChannel(app, root, () => fill(root, app)) };
+}
+
+function fill(root, app) {
   const views = [backplot(app), progress(app), alarmList(app, { most: 5, title: "Alarms" }), diagnostics(app)];
   root.append(views[0].element, h("div", { class: "stack" }, views.slice(1).map((view) => view.element)));
-  return { unmount: () => views.forEach((view) => view.end?.()) };
+  return () => views.forEach((view) => view.end?.());
 }
 
 function progress(app) {
@@ -23,5 +28,5 @@ function progress(app) {
   };
   const end = store.on("state", update);
   update();
-  return { element: panel("Progress", bar, text, block), end };
+  return { element: panel(store.ofChannel("Progress"), bar, text, block), end };
 }

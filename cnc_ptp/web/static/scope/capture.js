@@ -14,13 +14,16 @@ export class Capture {
     this.mode = "off"; // off, normal, single
     this.source = "";
     this.trigger = new Trigger();
-    this.held = null; // {ring, from, to, zero}
+    this.held = null; // as shown() gives it
     this.isFrozen = false;
     this.ring = new Ring(0, 1);
+    [this._step, this._shift] = [1, 0]; // sample n of the ring is that of cycle n · step + shift
     this.version = 0;
     this._columns = [];
     this._stream = -1;
     this._turn = 0;
+    this._wanted = null; // time of a recording that is to be read next
+    this._isReading = false;
     this._end = app.store.on("event", (event) => this.mode !== "off" && this.trigger.takeEvent(event) && this._fired());
     app.connection.onBinary = (data) => this._take(data);
   }
@@ -41,7 +44,6 @@ export class Capture {
     this.channels.forEach((channel, i) => (formulas[i] ? formulas[i].names : [channel.name]).forEach((name) => needed.add(name)));
     this._formulas = formulas;
     this._names = [...needed].filter((name) => !this.channels.some((channel) => channel.formula && channel.name === name));
-    this._step = 1;
     this._fresh();
     if (this._names.length === 0) {
       this.app.connection.send({ type: "scope_stop" });
@@ -57,6 +59,7 @@ export class Capture {
     const count = this.channels.length;
     this._stream = -1;
     this.ring = new Ring(count, Math.min(Math.round(SECONDS / this.cycleTime), Math.floor(MOST_SAMPLES / Math.max(1, count)) + 1000));
+    [this._step, this._shift] = [1, 0];
     this.held = null;
     this.isFrozen = false;
     this.trigger.arm();
@@ -81,8 +84,8 @@ export class Capture {
       known.set(channel.name, values);
       return values;
     });
-    this.ring.push(Math.round(frame.cycle / frame.step), columns, frame.count);
-    this._step = frame.step;
+    [this._step, this._shift] = [frame.step, frame.cycle % frame.step];
+    this.ring.push(Math.floor(frame.cycle / frame.step), columns, frame.count);
     this.version += 1;
     if (this.mode === "off" || this.isFrozen) return;
     const source = this.channels.findIndex((channel) => channel.name === this.source);
@@ -90,19 +93,36 @@ export class Capture {
     this._hold();
   }
 
-  /** The piece of a recording around a time (s). */
+  /** The piece of a recording around a time (s); while one is read, the last time that is wanted waits. */
   async read(time) {
+    this._wanted = time;
+    if (this._isReading) return;
+    this._isReading = true;
+    try {
+      while (this._wanted !== null) {
+        const next = this._wanted;
+        this._wanted = null;
+        await this._readAround(next);
+      }
+    } finally {
+      this._isReading = false;
+    }
+  }
+
+  /** Every cycle, as far as the ring holds so many. */
+  async _readAround(time) {
     if (!this._names?.length) return;
     const turn = this._turn;
     const { start = 0, end = 0 } = this.app.store.machine;
     const from = Math.max(start, Math.min(time - this.window / 2, end - this.window));
-    const path = `/api/recorded?signals=${encodeURIComponent(this._names.join(","))}&from=${from}&to=${Math.min(end, from + this.window)}&points=2001`; // 2 s with both their ends
+    const path = `/api/recorded?signals=${encodeURIComponent(this._names.join(","))}&from=${from}&to=${Math.min(end, from + this.window)}&points=${this.ring.capacity}`;
     const bytes = await this.app.attempt(this.app.connection.http(path, { as: "bytes" }));
     if (!bytes || turn !== this._turn) return;
     const frame = readRecorded(bytes);
     this._formulas = this.channels.map((channel) => (channel.formula ? formula(channel.formula) : null));
     this.ring.clear();
     this._push(frame);
+    this.ring.lost = missing(frame);
   }
 
   // the trigger
@@ -126,7 +146,7 @@ export class Capture {
     const cycles = Math.round(this.window / this.cycleTime);
     const from = cycle - Math.round(this.pre * cycles);
     if (this.ring.end < from + cycles) return;
-    this.held = { ring: this.ring.copy(), from, to: from + cycles, zero: cycle };
+    this.held = { ring: this.ring.copy(), from, to: from + cycles, zero: cycle, step: 1, shift: 0 };
     if (this.mode === "single") this.isFrozen = true;
     else this.trigger.arm();
   }
@@ -141,47 +161,73 @@ export class Capture {
     this.version += 1;
   }
 
-  /** What is shown: a ring, the cycles from and to, and the cycle that counts as 0 s. */
+  /** What is shown: a ring, its samples from and to, the cycle that counts as 0 s, and which cycles its samples are of. */
   shown(asCopy = false) {
     if (this.held) return this.held;
-    const cycles = Math.max(2, Math.round(this.window / (this.cycleTime * this._step)));
+    const [step, shift] = [this._step, this._shift];
+    const count = Math.max(2, Math.round(this.window / (this.cycleTime * step)));
     const ring = asCopy ? this.ring.copy() : this.ring;
-    return { ring, from: Math.max(ring.begin, ring.end - cycles), to: ring.end, zero: 0 };
+    return { ring, from: Math.max(ring.begin, ring.end - count), to: ring.end, zero: 0, step, shift };
   }
 
   get sampleTime() {
-    return this.cycleTime * (this._step || 1);
+    return this.cycleTime * this.shown().step;
   }
 
   /** Times (s) and values of channels for a graph of so many pixels; null at what is missing. */
   data(indices, pixels, range = null) {
-    const { ring, from, to, zero } = this.shown();
-    const [first, behind] = range ? [range[0] / this.sampleTime + zero, range[1] / this.sampleTime + zero] : [from, to];
-    const [cycles, ...columns] = drawn(ring, indices, first, behind, pixels);
-    return [Array.from(cycles, (cycle) => (cycle - zero) * this.sampleTime), ...columns.map((column) => Array.from(column, (value) => (Number.isNaN(value) ? null : value)))];
+    const shown = this.shown();
+    const [first, behind] = range ? range.map((time) => this._sampleAt(time, shown)) : [shown.from, shown.to];
+    const [samples, ...columns] = drawn(shown.ring, indices, first, behind, pixels);
+    return [Array.from(samples, (sample) => this._timeOf(sample, shown)), ...columns.map((column) => Array.from(column, (value) => (Number.isNaN(value) ? null : value)))];
+  }
+
+  /** Samples of the picture: {cycle, time (s), values}. */
+  *rows() {
+    const shown = this.shown();
+    const { ring, from, to, step, shift } = shown;
+    for (let sample = Math.max(from, ring.begin); sample < Math.min(to, ring.end); sample++) {
+      yield { cycle: sample * step + shift, time: this._timeOf(sample, shown), values: ring.columns.map((_, i) => ring.at(i, sample)) };
+    }
   }
 
   /** The samples of a channel between two times (s) of the picture. */
   between(index, begin, end) {
-    const { ring, zero } = this.shown();
-    return ring.slice(index, Math.round(begin / this.sampleTime) + zero, Math.round(end / this.sampleTime) + zero + 1);
+    const shown = this.shown();
+    return shown.ring.slice(index, Math.round(this._sampleAt(begin, shown)), Math.round(this._sampleAt(end, shown)) + 1);
   }
 
   valueAt(index, time) {
-    const { ring, zero } = this.shown();
-    return ring.at(index, Math.round(time / this.sampleTime) + zero);
+    const shown = this.shown();
+    return shown.ring.at(index, Math.round(this._sampleAt(time, shown)));
   }
 
   /** First and last time (s) of the picture. */
   get range() {
-    const { from, to, zero } = this.shown();
-    return [(from - zero) * this.sampleTime, (to - zero) * this.sampleTime];
+    const shown = this.shown();
+    return [this._timeOf(shown.from, shown), this._timeOf(shown.to, shown)];
+  }
+
+  _timeOf(sample, { zero, step, shift }) {
+    return (sample * step + shift - zero) * this.cycleTime;
+  }
+
+  _sampleAt(time, { zero, step, shift }) {
+    return (time / this.cycleTime + zero - shift) / step;
   }
 
   end() {
     this._turn += 1;
+    this._wanted = null;
     this._end();
     this.app.connection.onBinary = () => {};
     this.app.connection.send({ type: "scope_stop" });
   }
+}
+
+/** Samples of a piece of a recording that some signal does not have. */
+function missing({ columns, count }) {
+  let lost = 0;
+  for (let i = 0; i < count; i++) if (columns.some((column) => Number.isNaN(column[i]))) lost += 1;
+  return lost;
 }

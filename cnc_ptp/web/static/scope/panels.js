@@ -22,8 +22,8 @@ export function runPanel(app, capture, picture) {
   const timer = setInterval(() => {
     if (!status.isConnected) return clearInterval(timer);
     press(freeze, capture.isFrozen);
-    const lost = capture.ring.lost ? ` · ${capture.ring.lost} samples lost` : "";
-    return say(status, `${capture.isFrozen ? "Frozen" : capture.mode === "off" ? "Running" : capture.trigger.cycle === null ? "Waiting for the trigger" : "Triggered"} · ${capture.ring.length} samples${lost}`);
+    const state = capture.isFrozen ? "Frozen" : capture.mode === "off" ? "Running" : capture.trigger.cycle === null ? "Waiting for the trigger" : "Triggered";
+    return say(status, `${state} · ${samplesOf(capture.shown())}`);
   }, 200);
   const snapshot = async () => {
     const bytes = await app.attempt(app.connection.http(`/api/snapshot.mcap?seconds=${Math.max(1, capture.window)}`, { as: "bytes" }));
@@ -34,6 +34,12 @@ export function runPanel(app, capture, picture) {
     h("div", { class: "row" }, button("Export CSV", () => download("scope.csv", csv(capture))), !capture.isRecording && app.store.role !== "viewer" && button("MCAP snapshot", snapshot)),
   );
   return { element, refresh: () => (length.value = String(capture.window)) };
+}
+
+/** How many samples there are, whether they are of every cycle, and how many are missing. */
+function samplesOf({ ring, step }) {
+  const some = step > 1 ? `, one of every ${step} cycles` : "";
+  return `${ring.length} samples${some}${ring.lost ? ` · ${ring.lost} samples lost` : ""}`;
 }
 
 export function channelPanel(app, capture, changed) {
@@ -133,7 +139,7 @@ export function viewPanel(app, capture, changed) {
     const view = savedViews().get(names.value);
     if (!view) return;
     name.value = names.value;
-    Object.assign(capture, { channels: view.channels.map((channel) => ({ ...channel })), window: view.window, pre: view.pre ?? 0.2, mode: view.mode || "off", source: view.source || "" });
+    Object.assign(capture, { channels: view.channels.map((channel) => ({ ...channel })), window: view.window, pre: view.pre ?? 0.2, mode: capture.isRecording ? "off" : view.mode || "off", source: view.source || "" });
     capture.arm(view.trigger || {});
     await changed();
   });

@@ -37,14 +37,10 @@ function store(views) {
   }
 }
 
-/** All samples of the picture, one row for each cycle. */
+/** All samples of the picture, one row for each. */
 export function csv(capture) {
-  const { ring, from, to, zero } = capture.shown();
-  const names = capture.channels.map(({ name }) => quoted(name));
-  const lines = [["cycle", "time", ...names].join(",")];
-  for (let cycle = Math.max(from, ring.begin); cycle < Math.min(to, ring.end); cycle++) {
-    lines.push([cycle, ((cycle - zero) * capture.sampleTime).toFixed(6), ...ring.columns.map((_, i) => ring.at(i, cycle))].join(","));
-  }
+  const lines = [["cycle", "time", ...capture.channels.map(({ name }) => quoted(name))].join(",")];
+  for (const { cycle, time, values } of capture.rows()) lines.push([cycle, time.toFixed(6), ...values].join(","));
   return lines.join("\n") + "\n";
 }
 

@@ -20,7 +20,7 @@ export function backplot(app) {
   const done = toggle("Executed part only", (on) => (press(done, on), update()));
   const measured = toggle("Measured path", showMeasured);
   measured.hidden = !store.machine.recording;
-  const element = panel("Backplot", h("div", { class: "row" }, views, by, done, measured, button("Fit", () => scene?.look(views.value))), host, legend, status);
+  const element = panel(store.ofChannel("Backplot"), h("div", { class: "row" }, views, by, done, measured, button("Fit", () => scene?.look(views.value))), host, legend, status);
   element.classList.add("backplot");
   let [path, pairs, scene] = [null, null, null];
   try {
@@ -102,14 +102,14 @@ export function backplot(app) {
   views.addEventListener("change", () => scene.look(views.value));
   by.addEventListener("change", () => path && scene.setColours(colour()));
   canvas.addEventListener("keydown", (event) => {
-    const act = { ArrowLeft: () => scene.rotate(-TURN), ArrowRight: () => scene.rotate(TURN), "+": () => scene.zoom(1.2), "-": () => scene.zoom(1 / 1.2) }[event.key];
+    const act = { ArrowLeft: () => scene.rotate(-TURN), ArrowRight: () => scene.rotate(TURN), ArrowUp: () => scene.tilt(TURN), ArrowDown: () => scene.tilt(-TURN), "+": () => scene.zoom(1.2), "-": () => scene.zoom(1 / 1.2) }[event.key];
     if (!act) return;
     act();
     event.preventDefault();
   });
   const theme = () => scene.setTheme();
   window.addEventListener("theme", theme);
-  const ends = [store.on("state", update), store.on("program", load), () => window.removeEventListener("theme", theme), () => (loading += 1), () => scene.end()];
+  const ends = [store.on("state", update), store.on("program", ({ channel }) => channel === store.channel && load()), () => window.removeEventListener("theme", theme), () => (loading += 1), () => scene.end()];
   element.scene = scene;
   load();
   update();

@@ -11,6 +11,7 @@ const VIEWS = { iso: [1, -1.2, 0.9], top: [0, 0, 1], front: [0, -1, 0], side: [1
 const UP = { top: [0, 1, 0], turning: [1, 0, 0] };
 const MARGIN = 1.25;
 const TRAIL = 0xc2255c;
+const STEEPEST = Math.PI / 180; // between the view and straight from above or below
 const SMALLEST = 1e-3; // mm, of the box that is looked at
 
 export class PathScene {
@@ -139,6 +140,17 @@ export class PathScene {
     const offset = this._camera.position.clone().sub(this._controls.target);
     offset.applyAxisAngle(this._camera.up, (degrees * Math.PI) / 180);
     this._camera.position.copy(this._controls.target).add(offset);
+    this._controls.update();
+  }
+
+  /** The view comes more from above; negative: from below. */
+  tilt(degrees) {
+    const { up, position } = this._camera;
+    const offset = position.clone().sub(this._controls.target);
+    const angle = offset.angleTo(up);
+    const wanted = Math.min(Math.max(angle - (degrees * Math.PI) / 180, STEEPEST), Math.PI - STEEPEST);
+    offset.applyAxisAngle(new Vector3().crossVectors(up, offset).normalize(), wanted - angle);
+    position.copy(this._controls.target).add(offset);
     this._controls.update();
   }
 
