@@ -56,8 +56,10 @@ def json_of(arguments: Mapping[str, Any]) -> str:
 
 
 def arguments_of(arguments_json: str) -> dict[str, Any]:
-    """What `json_of` has written. Raises ValueError."""
-    arguments: dict[str, Any] = json.loads(arguments_json, object_hook=_number_or_object)
+    """What `json_of` has written. Raises ValueError for anything but a JSON object."""
+    arguments: Any = json.loads(arguments_json, object_hook=_number_or_object)
+    if not isinstance(arguments, dict):
+        raise ValueError(f"no JSON object: {arguments_json:.60}")
     return arguments
 
 

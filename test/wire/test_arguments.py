@@ -32,3 +32,9 @@ def test_another_object_of_that_key_remains_one(other):
 
 def test_a_value_that_is_no_json_is_its_repr():
     assert arguments_of(json_of({"a": {1}, "b": math.inf})) == {"a": "{1}", "b": math.inf}
+
+
+@pytest.mark.parametrize("text", ["[1]", "1", "null", '{"$numberDouble": "NaN"}'])
+def test_anything_but_an_object_is_refused(text):
+    with pytest.raises(ValueError, match="no JSON object"):
+        arguments_of(text)
