@@ -127,7 +127,10 @@ def claim_domain() -> socket.socket:
 
 
 def timer(node: Node, period: float, call: Callable[[], None]) -> Timer:
-    """Calls each `period` (s) by a clock that cannot be set. Where the wall clock is set back, rclpy holds it up nevertheless."""
+    """Calls each `period` (s) by a clock that cannot be set.
+
+    The executor of these wheels stops it nevertheless while the wall clock is set back.
+    """
     return node.create_timer(period, call, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
 
