@@ -48,7 +48,7 @@ demo: setup
 	@echo "The report is runs/demo.html. Pages of this run in a browser, http://localhost:8080: make demo LOOK=1, or $(BIN)/cnc_ptp web runs/demo.mcap"
 	$(if $(LOOK),$(BIN)/cnc_ptp web runs/demo.mcap)
 
-# As LONG=1 does not: without those that are marked as long.
+# Without LONG=1, tests that are marked as long are left out.
 SHORT := $(if $(LONG),,-m "not long")
 
 test: setup
@@ -111,6 +111,7 @@ audit: setup $(AUDIT)/.tools
 	$(AUDIT)/bin/pip-licenses --python $(BIN)/python --format markdown --order license --output-file build/licences.md \
 	  --partial-match --fail-on "AGPL;SSPL;Affero"
 	@echo "Licences by package: build/licences.md"
+	@rm -f build/audit.json
 	-$(AUDIT)/bin/pip-audit --requirement requirements.lock --require-hashes --disable-pip --format json --output build/audit.json
 	$(BIN)/python tools/audit_result.py build/audit.json
 

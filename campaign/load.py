@@ -115,10 +115,8 @@ def busy_processors(folder: Path, domain: int) -> LoadRow:
 
 
 MEMORY = """
-import sys, time
-held = []
-for _ in range(int(sys.argv[1])):
-    held.append(bytearray(b"1") * 2**20)
+import mmap, sys, time
+held = mmap.mmap(-1, int(sys.argv[1]) * 2**20, mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS | mmap.MAP_POPULATE)
 time.sleep(float(sys.argv[2]))
 """
 """A program that holds so many MiB for so many seconds."""

@@ -23,7 +23,6 @@ def messages(path):
         return [(channel.topic, message.log_time, message.data) for _, channel, message in reader.iter_messages()]
 
 
-@pytest.mark.long
 def test_every_byte_at_which_a_file_may_be_cut(tmp_path):
     whole, cut, output = tmp_path / "whole.mcap", tmp_path / "cut.mcap", tmp_path / "new" / "out.mcap"
     output.parent.mkdir()

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.plc.hli.external_commands import STOPS
-from cnc_ptp.protocol.control_units import CONTROL_UNITS
+from cnc_ptp.protocol.control_units import CONTROL_UNITS, EMERGENCY_STOP
 
 HLI_UNITS = 1
 """`units` of a control message: integers of the HLI."""
@@ -85,15 +85,12 @@ def in_si(external: dict[str, float]) -> None:
         external[name] /= PER_UNIT[name]
 
 
-EMERGENCY_STOP = "emergency_stop"
-
-
 def stops_of(kind: str, message: ControlMessage) -> dict[str, dict[str, Any]]:
     """What brings the object to rest: names of commands and their arguments."""
     stops: dict[str, dict[str, Any]] = {}
-    enabled, wanted = message.units[EMERGENCY_STOP]
+    enabled, wanted = message.units[EMERGENCY_STOP.name]
     if enabled and wanted:
-        stops["set_emergency_stop"] = {"enabled": True}
+        stops[EMERGENCY_STOP.command] = {"enabled": True}
     if message.semaphore:
         command = STOPS[kind].get(int(message.external["type"]))
         if command is not None:
