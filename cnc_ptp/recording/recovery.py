@@ -213,6 +213,7 @@ class _Copy:
     def take(self, record: RawRecord) -> None:
         with self._noted(record):
             if record.opcode == Opcode.CHUNK:
+                self.take_loose()  # may name its channels
                 self._take_items(record, self._records.in_chunk(record))
             elif record.opcode in (Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE):
                 self._loose += RECORD_PREFIX.pack(record.opcode, len(record.body))

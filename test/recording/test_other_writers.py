@@ -5,6 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from mcap.data_stream import RecordBuilder
+from mcap.opcode import Opcode
+from mcap.records import Chunk, Message
 from mcap.writer import Writer
 
 import cnc_ptp.recording
@@ -56,6 +59,25 @@ def test_recover_makes_chunks_of_a_cut_file_without_any(tmp_path: Path) -> None:
     recovered = recover(path, output)
     assert recovered.messages == COUNT - 1 and len(recovered.lost) == 1
     assert values(output) == [number / 2 for number in range(COUNT - 1)]
+
+
+def test_recover_knows_channels_that_are_named_before_the_chunk(tmp_path: Path) -> None:
+    """Some writers name them beside the chunks; the file was cut before its summary."""
+    path, output = tmp_path / "cut.mcap", tmp_path / "out.mcap"
+    content, chunk = b"\0\1\0\0" + np.array([2.5]).tobytes(), RecordBuilder()
+    Message(channel_id=1, log_time=7, data=content, publish_time=7, sequence=0).write(chunk)
+    data = chunk.end()
+    with path.open("wb") as stream:
+        writer = Writer(stream, use_chunking=False)
+        writer.start()
+        assert writer.register_channel("/point", "cdr", writer.register_schema("a/msg/P", "ros2msg", POINT)) == 1
+        writer.finish()
+    whole, named = path.read_bytes(), RecordBuilder()
+    Chunk("", data, 7, 7, 0, len(data)).write(named)
+    end = whole.index(bytes([Opcode.DATA_END]) + (4).to_bytes(8, "little"))
+    path.write_bytes(whole[:end] + named.end())
+    assert recover(path, output).messages == 1
+    assert values(output) == [2.5]
 
 
 @pytest.mark.parametrize("finish", [True, False])
