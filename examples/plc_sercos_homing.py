@@ -29,6 +29,8 @@ class Plc:
     def __init__(self, io) -> None:
         self.axis = io.axis("x")
         self.error = 0
+        self.commanded = False  # S-0-0148 is 3
+        self.referenced = False  # S-0-0403
         self.steps = self.sequence(io)
 
     def cycle(self, io) -> None:
@@ -41,7 +43,7 @@ class Plc:
         if self.error:
             text = yield from self.read("S-0-0095")
             io.event(f"homing of x: error 16#{self.error:X}, the drive says: {text}")
-            yield from self.write("S-0-0148", 0)
+            yield from self.end()
         else:
             io.event(f"x is homed, its reference point is at {self.position:g} mm")
             yield from self.command("move_absolute", target=self.position + 20.0)
@@ -56,6 +58,7 @@ class Plc:
         yield from self.write("S-0-0041", round(self.velocity * UM_PER_MIN))
         yield from self.write("S-0-0052", round(self.position * TENTHS_OF_UM))
         yield from self.write("S-0-0148", 3)  # set and enable
+        self.commanded = True
         state = ACTIVE
         while state == ACTIVE:
             for _ in range(POLL_CYCLES):
@@ -64,11 +67,17 @@ class Plc:
         if state != EXECUTED:
             self.error = ABORTED_ERROR
             return
-        referenced = yield from self.read("S-0-0403")
-        if not referenced & 1:
+        status = yield from self.read("S-0-0403")
+        self.referenced = bool(status & 1)
+        if not self.referenced:
             self.error = REFERENCE_ERROR
             return
-        yield from self.write("S-0-0148", 0)  # the axis is in Standstill again
+        yield from self.end()
+
+    def end(self) -> Generator[None, None, None]:
+        """Takes the procedure command back: the axis is in Standstill again."""
+        yield from self.write("S-0-0148", 0)
+        self.commanded = False
 
     def read(self, idn):
         answer = yield from self.command("read_drive_parameter", idn=idn)

@@ -117,10 +117,9 @@ class FunctionOutput:
         synchronisation = self._channel.m_functions.get(number, Synchronisation.MOS)
         if not synchronisation & OUTPUT:
             return
-        spindle, waits = self.spindles[change.spindle].title, bool(synchronisation & WAITING)
-        request = self._request(block.source, "M", spindle, number, waits=waits)
+        request = self._request(block.source, "M", self.spindles[change.spindle].title, number, synchronisation)
         outgoing.requests.append(request)
-        if waits:
+        if request.acknowledge_needed:
             wait.request_id = request.id
 
     def at_program_end(self, source: Source) -> Outgoing:
@@ -172,7 +171,7 @@ class FunctionOutput:
             outgoing.commands += self.spindles.stop(spindle, homes=homes)
             outgoing.expected.append(Expectation(spindle.node))
             if spindle.reported_to_plc and not spindle.follows:
-                outgoing.requests.append(self._request(source, "M", spindle.title, 5, waits=False))
+                outgoing.requests.append(self._request(source, "M", spindle.title, 5, Synchronisation.MOS))
         return outgoing
 
     def _synchronisation(self, function: Function) -> Synchronisation:
@@ -220,8 +219,9 @@ class FunctionOutput:
             outgoing.commands += self.spindles.tool_limits(function.number)
         if synchronisation & OUTPUT:
             node = self.spindles[function.spindle].node if function.spindle else ""
-            waits = bool(synchronisation & WAITING)
-            request = self._request(source, function.letter, node, function.number, waits=waits, value=function.value)
+            request = self._request(
+                source, function.letter, node, function.number, synchronisation, value=function.value
+            )
             self._ask(request, synchronisation, NOTHING, outgoing)
 
     def _spindle_function(self, function: SpindleFunction, source: Source, outgoing: Outgoing) -> None:
@@ -245,7 +245,7 @@ class FunctionOutput:
             kind,
             self.spindles[function.spindle].title,
             number,
-            waits=bool(self._synchronisation(function) & WAITING),
+            self._synchronisation(function),
             value=function.speed_rpm or 0.0,
             position=function.position_deg or 0.0,
             direction=function.direction,
@@ -260,7 +260,7 @@ class FunctionOutput:
             outgoing.add_wait(synchronisation, expected, request.id)
 
     def _request(
-        self, source: Source, kind: str, spindle: str, number: int, *, waits: bool, **words: Any
+        self, source: Source, kind: str, spindle: str, number: int, synchronisation: Synchronisation, **words: Any
     ) -> HandshakeRequest:
         """`words`: value, position and direction, if the function has them."""
         return HandshakeRequest(
@@ -272,6 +272,7 @@ class FunctionOutput:
             number=number,
             value=words.pop("value", 0.0),
             line=source.line,
-            acknowledge_needed=waits,
+            acknowledge_needed=bool(synchronisation & WAITING),
+            synchronisation=synchronisation.constants,
             **words,
         )

@@ -24,6 +24,7 @@ from cnc_ptp.client.observations import Observations
 from cnc_ptp.client.started_graph import STOP_TIME, StartedGraph
 from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import HeldSignals
+from cnc_ptp.machine.plc_file import check_plc
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import convert
 from cnc_ptp.nodes.bridge.jog_topics import free_run_text, second_client_text
@@ -347,8 +348,10 @@ def wake(future: asyncio.Future[None]) -> None:
 
 def start_graph(options: Mapping[str, Any], *, domain: int | None, namespace: str, timeout: float) -> GraphLink:
     """The link to a graph that it starts. Raises as Machine.start."""
-    check_recording(options.get("record"), machine_file=options["machine"], scenario=options.get("scenario"))
+    files = {"scenario": options.get("scenario"), "PLC_file": options.get("plc")}
+    check_recording(options.get("record"), machine_file=options["machine"], **files)
     parameters = read_machine(options["machine"])
+    check_plc(parameters, options.get("plc"))
     if (recorder := options.get("recorder")) is not None:
         check_recorder(RecorderOptions(**recorder), options.get("record"), unit_kinds(parameters))
     graph = StartedGraph(options, domain=domain, namespace=namespace)

@@ -55,15 +55,26 @@ class Machine:
     # where it comes from
 
     @classmethod
-    def offline(cls, machine: Path, *, record: Path | None = None, recorder: RecorderOptions | None = None) -> Machine:
+    def offline(
+        cls,
+        machine: Path,
+        *,
+        record: Path | None = None,
+        recorder: RecorderOptions | None = None,
+        scenario: Path | None = None,
+        plc: Path | None = None,
+    ) -> Machine:
         """A machine without a graph, as fast as possible, the same to the bit every time. Its first block is computed.
 
-        `record`: an MCAP file, as of `cnc_ptp simulate`; `recorder`: how it is written, and recordings on demand.
-        Raises ParameterError, and CncError 26007, 26012, 26019, 26020, 26110, 26113, 26117, 26222.
+        `record`: an MCAP file, as of `cnc_ptp simulate`; `recorder`: how it is written, and recordings on demand;
+        `scenario`: timed commands; `plc`: a PLC in a file. Raises ParameterError, ScenarioError, and CncError 25104,
+        26007, 26012, 26019, 26020, 26110, 26113, 26117, 26222.
         """
         from cnc_ptp.client.offline_link import OfflineLink
 
-        return cls(OfflineLink(fspath(machine), record=None if record is None else fspath(record), recorder=recorder))
+        files = {"record": record, "scenario": scenario, "plc": plc}
+        given = {name: None if path is None else fspath(path) for name, path in files.items()}
+        return cls(OfflineLink(fspath(machine), recorder=recorder, **given))
 
     @classmethod
     def start(
@@ -73,6 +84,7 @@ class Machine:
         record: Path | None = None,
         recorder: RecorderOptions | None = None,
         scenario: Path | None = None,
+        plc: Path | None = None,
         composed: bool = False,
         domain: int | None = None,
         namespace: str = "",
@@ -81,17 +93,20 @@ class Machine:
         """Starts the ROS graph of a machine, as `cnc_ptp run --stay` does; it ends on its ramps with this program.
 
         `record`: an MCAP file; `recorder`: how it is written, and recordings on demand; `scenario`: timed commands;
-        `composed`: all nodes in one process; `domain`: None =
-        ROS_DOMAIN_ID; `namespace`: of all nodes; `timeout` in s until it runs. Raises ParameterError, CncError 26176
+        `plc`: a PLC in a file; `composed`: all nodes in one process; `domain`: None = ROS_DOMAIN_ID;
+        `namespace`: of all nodes; `timeout` in s until it runs. Raises ParameterError, ScenarioError, CncError 26176
         (not started) and what `cnc_ptp run` refuses: 26107 (the domain is taken), 26108, 26110, 26113, 26117, 26141 …
         """
         from cnc_ptp.client.graph_link import start_graph
 
         check_seconds("start", "timeout", timeout, "nothing was started", finite=True)
-        files = {name: fspath(path) for name, path in (("record", record), ("scenario", scenario)) if path is not None}
+        given = {"record": record, "scenario": scenario, "plc": plc}
+        files = {name: fspath(path) for name, path in given.items() if path is not None}
         options: dict[str, Any] = {"machine": fspath(machine), "composed": composed, **files}
         if record is not None or recorder is not None:
-            options["recorder"] = asdict(replace(recorder or RecorderOptions(), scenario=files.get("scenario")))
+            options["recorder"] = asdict(
+                replace(recorder or RecorderOptions(), scenario=files.get("scenario"), plc=files.get("plc"))
+            )
         return cls(start_graph(options, domain=domain, namespace=namespace, timeout=timeout))
 
     @classmethod

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from cnc_ptp.axis.external_commands import SETPOINTS
@@ -16,6 +17,8 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import HeldSignals
 from cnc_ptp.machine.command_files import with_program
 from cnc_ptp.machine.offline import STUCK_TIME
+from cnc_ptp.machine.plc_file import read_plc
+from cnc_ptp.machine.run_entries import read_entries
 from cnc_ptp.machine.wiring import build_units, unit_kinds
 from cnc_ptp.nodes.unit.requests import RUN_OVER
 from cnc_ptp.parameters import ParameterError, ParameterSet, machine_text, read_machine
@@ -40,9 +43,17 @@ class OfflineLink(Link):
 
     clock = " of machine time"
 
-    def __init__(self, machine: str, *, record: str | None = None, recorder: RecorderOptions | None = None) -> None:
-        """Raises ParameterError, and CncError 26007, 26012, 26019, 26020, 26110, 26113, 26117, 26222."""
-        check_recording(record, machine_file=machine)
+    def __init__(
+        self,
+        machine: str,
+        *,
+        record: str | None = None,
+        recorder: RecorderOptions | None = None,
+        scenario: str | None = None,
+        plc: str | None = None,
+    ) -> None:
+        """Raises as Machine.offline."""
+        check_recording(record, machine_file=machine, scenario=scenario, PLC_file=plc)
         try:
             self._parameters = read_machine(machine)
         except ParameterError as error:
@@ -50,9 +61,12 @@ class OfflineLink(Link):
         self.kinds = unit_kinds(self._parameters)
         self.seen = Observations(self.kinds)
         self.cycle_time = self._parameters.cycle_time_us * 1e-6
-        self._units = build_units(self._parameters, end_when_idle=False)
+        entries = read_entries(self._parameters, program=None, scenario=scenario) if scenario is not None else ()
+        plc_file = None if plc is None else read_plc(plc)
+        self._units = build_units(self._parameters, scenario=entries, end_when_idle=False, plc_file=plc_file)
         self.has_recorder = recorder is not None or record is not None
-        self._run = self._offline_run(machine, record, recorder or FROM_THE_START)
+        options = replace(recorder or FROM_THE_START, scenario=scenario, plc=plc)
+        self._run = self._offline_run(machine, record, options)
         self._tickets = 0
         self._replies: dict[int, Reply] = {}
         self._asked: dict[int, Command] = {}

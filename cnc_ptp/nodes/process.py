@@ -6,11 +6,13 @@ import hashlib
 import os
 import socket
 import sys
+import time
 from collections.abc import Callable, Iterable, MutableMapping, Sequence, Set
 from contextlib import redirect_stdout, suppress
 from io import StringIO
 from pathlib import Path
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import rclpy
 from rclpy.clock import Clock
@@ -21,7 +23,6 @@ from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.signals import SignalHandlerOptions
-from rclpy.timer import Timer
 from rclpy.utilities import get_rmw_implementation_identifier
 
 from cnc_ptp.errors import WRONG_INPUT, CncError
@@ -43,6 +44,8 @@ SPIN_TIMEOUT = 0.1
 START_PATIENCE = 2.0
 """Seconds that a node may take for its first block, if the watchdog time is shorter: processes are still busy with each
 other's start, and nothing has moved yet."""
+LATE_PERIODS = 2.0
+"""After these a timer is late: the executor does not call it."""
 READY_PERIOD = 0.05
 """Seconds between two checks of a node that waits for all others."""
 PATIENCE = 3.0
@@ -126,12 +129,36 @@ def claim_domain() -> socket.socket:
     return claim
 
 
-def timer(node: Node, period: float, call: Callable[[], None]) -> Timer:
-    """Calls each `period` (s) by a clock that cannot be set.
+class SteadyTimer:
+    """A timer by a clock that cannot be set; `spin` calls for it where the executor does not.
 
-    The executor of these wheels stops it nevertheless while the wall clock is set back.
+    The executor of these wheels lets its timers stand while the wall clock is set back, whichever clock they have.
     """
-    return node.create_timer(period, call, clock=Clock(clock_type=ClockType.STEADY_TIME))
+
+    def __init__(self, node: Node, period: float, call: Callable[[], None]) -> None:
+        self._period, self._call, self._called = period, call, time.monotonic()
+        self._timer = node.create_timer(period, self._on_time, clock=Clock(clock_type=ClockType.STEADY_TIME))
+
+    def _on_time(self) -> None:
+        self._called = time.monotonic()
+        self._call()
+
+    def call_if_late(self) -> None:
+        if time.monotonic() - self._called > LATE_PERIODS * self._period and not self._timer.is_canceled():
+            self._on_time()
+
+    def cancel(self) -> None:
+        self._timer.cancel()
+
+
+_timers: WeakKeyDictionary[Node, list[SteadyTimer]] = WeakKeyDictionary()
+
+
+def timer(node: Node, period: float, call: Callable[[], None]) -> SteadyTimer:
+    """Calls each `period` (s), whatever becomes of the wall clock."""
+    made = SteadyTimer(node, period, call)
+    _timers.setdefault(node, []).append(made)
+    return made
 
 
 def is_read(node: Node, publisher: Publisher[Any], names: Set[str]) -> bool:
@@ -171,6 +198,8 @@ def spin(
             executor.spin_once(timeout_sec=wait())
             after()
             for node in nodes:
+                for late in _timers.get(node, ()):
+                    late.call_if_late()
                 if failure := getattr(node, "failure", None):
                     raise failure
     finally:

@@ -188,6 +188,7 @@ class HandshakeRequest:
     acknowledge_needed: bool
     position: float = 0.0
     direction: str = ""
+    synchronisation: str = ""
 
 
 @dataclass(slots=True)

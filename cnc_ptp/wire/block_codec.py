@@ -74,7 +74,7 @@ _NESTED: dict[str, Callable[[Any], Any]] = {
     "control_units": lambda sent: ControlUnitState(sent.name, sent.held, sent.request, sent.state, sent.holder),
     "offsets": lambda sent: channel_offsets(sent),
     "requests": lambda sent: HandshakeRequest(
-        **{name: getattr(sent, name) for name in HandshakeRequest.__dataclass_fields__}
+        **{name: getattr(sent, name) for name in HandshakeRequest.__dataclass_fields__ if hasattr(sent, name)}
     ),
 }
 """Elements of sequences that are more than numbers: as a message has them -> as a block has them."""

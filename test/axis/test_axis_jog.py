@@ -291,6 +291,7 @@ def test_a_jog_comes_to_the_limit_while_disabled_external_setpoints_come_to_rest
     assert bench.state == S.STANDSTILL and len(bench.event_texts()) == 1
 
 
+@pytest.mark.long
 def test_random_jogs_stay_within_all_limits() -> None:
     """Seeded: changes of velocity, direction and override at any time; never beyond a limit, never a step."""
     for seed in range(15):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from job_support import DONE, assert_each_ends_once, job_events
@@ -167,6 +168,7 @@ def test_the_last_target_is_reached_under_superimposed_motion(
     assert_each_ends_once(bench, set(jobs))
 
 
+@pytest.mark.long
 @QUICK
 @given(
     commands=st.lists(st.tuples(st.one_of(moves, additions, overrides, others), pauses), min_size=1, max_size=10),

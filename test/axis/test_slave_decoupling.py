@@ -120,6 +120,7 @@ def test_in_every_phase_of_the_master(phase: str, factor: float) -> None:
     assert_linear(bench, "y", "z", -2.0)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("factor", [1.0, -0.7, 3.0])
 @pytest.mark.parametrize("target", [1000.0, 1000.0137])
 def test_no_slave_creeps_on_after_the_very_end_of_its_master(factor: float, target: float) -> None:

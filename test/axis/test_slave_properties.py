@@ -7,6 +7,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from replay_support import bits, replay
@@ -113,6 +114,7 @@ def assert_relation(bench: SlaveBench, axis: str) -> None:
         assert not (error[begin : end - 1] * checked[begin : end - 1] > 1e-9).any(), (axis, name, f)
 
 
+@pytest.mark.long
 @given(steps)
 @QUICK
 def test_random_commands(sequence: list[Step]) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from machine_support import CYCLE_TIME, UnitBench, axis_bench
@@ -124,6 +125,7 @@ def test_any_sequence_is_smooth_and_ends_at_rest(kind: int, sequence: Any) -> No
     assert faults <= {26101}
 
 
+@pytest.mark.long
 @slow
 @given(sequence=steps, count=st.sampled_from([1, 7, 10]))
 def test_any_sequence_is_the_same_in_blocks_of_any_size(sequence: Any, count: int) -> None:

@@ -170,6 +170,7 @@ def test_growth_is_judged_by_both_quarters(monkeypatch, tmp_path):
     assert verdict.growth == 9000
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("count", "held"),
     [
@@ -188,6 +189,7 @@ def test_growth_that_is_no_finding(count, held, monkeypatch, tmp_path):
 # inputs that share a state
 
 
+@pytest.mark.long
 def test_a_finding_names_the_first_input_of_its_state(tmp_path):
     state = []
 

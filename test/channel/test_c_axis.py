@@ -193,6 +193,7 @@ def test_programs_can_read_the_axis() -> None:
     assert [event.text for event in bench.events_of("channel")] == ["30.000000 30.000000"]
 
 
+@pytest.mark.long
 def test_replay_gives_the_same_again() -> None:
     bench = run(PROGRAM, "- {at: 3.0, to: channel, do: set_override, percent: 40}")
     again, first = replay(bench.machine, bench.records, len(bench.blocks["plc"])), bits(bench)

@@ -609,6 +609,7 @@ def test_a_channel_without_spindles_and_one_without_axes() -> None:
     assert bench.errors() == [] and bench.last("channel").set_position == []
 
 
+@pytest.mark.long
 def test_commands_at_random_cycles_never_step_the_axes() -> None:
     """Seeded: feed hold, override, reset, start and axis faults on a program of lines and arcs."""
     program = "%P\nG01 X30 F6000\nG03 X30 Y20 I0 J10\nG01 X0 Y0 Z5\nG02 X10 Y10 I10 J0\nG00 X0 Y0 Z0\nM30"

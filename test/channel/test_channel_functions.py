@@ -243,6 +243,17 @@ def test_plc_info_waits_for_speed_and_acknowledgement(acknowledge_first: bool) -
     assert first_motion(bench) == pytest.approx(expected, abs=25)
 
 
+def test_a_request_names_its_synchronisation_type() -> None:
+    """What tells a PLC whether the path stands while it works, also in a recording."""
+    types = with_m(m50=Synchronisation.MVS_SNS, m51=Synchronisation.MNS_SNS, m52=Synchronisation.MOS)
+    bench = MachineBench("%P\nM50\nM51\nM52 T7\nM03 S1000\nM30", machine=types).run()
+    told = {(each.kind, each.number): (each.synchronisation, each.acknowledge_needed) for each in requests(bench)}
+    assert told[("M", 50)] == ("MVS_SNS", True) and told[("M", 51)] == ("MNS_SNS", True)
+    assert told[("M", 52)] == ("MOS", False) and told[("T", 7)] == ("MOS", False)
+    both = Synchronisation.MVS_SVS | Synchronisation.PLC_INFO
+    assert both.constants == "MVS_SVS | PLC_INFO" and Synchronisation.NO_SYNCH.constants == ""
+
+
 def test_plc_info_of_a_speed_without_waiting() -> None:
     bench = MachineBench(
         "%P\nM03 S600\nS900\nG01 X5 F3000\nM30", machine=with_spindle(m3=MOS | PLC_INFO, s=MOS | PLC_INFO)

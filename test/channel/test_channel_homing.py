@@ -179,6 +179,7 @@ def test_single_block_stops_behind_it() -> None:
     assert C.STOPPED in bench.states("channel")
 
 
+@pytest.mark.long
 def test_two_runs_and_a_replay_are_bit_identical() -> None:
     program = "N10 G74 X2 Y2 Z1 S1\nN20 G0 X10 Y10 Z5\nN30 G74 X1\nN40 X0\nM30"
     scenario = (

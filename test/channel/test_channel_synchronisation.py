@@ -360,6 +360,7 @@ def test_the_time_limit_names_the_spindle() -> None:
     ]
 
 
+@pytest.mark.long
 def test_without_a_time_limit_the_channel_waits_for_ever() -> None:
     machine = replace(with_m(), handshake_timeout_ms=0)
     bench = MachineBench("%P\nM08\nM30", MANUAL, machine=machine, end_when_idle=False).run(70.0)

@@ -94,6 +94,7 @@ def test_a_program_begins_without_a_tool() -> None:
     assert bench.position("z") == 5.0
 
 
+@pytest.mark.long
 def test_two_runs_and_a_replay_are_the_same_bits() -> None:
     program = "T2 D2\nG01 F3000 X1 Z-1\nG18 Y[V.G.WZ_AKT.R]\nV.G.WZ_AKT.L = 20\nY1\nD0 X0 Y0 Z0\nM30"
     first, second = run(program), run(program)

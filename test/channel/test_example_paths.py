@@ -19,11 +19,11 @@ from cnc_ptp.nc.faults import ProgramError
 MILL = "config/mill.yaml"
 LATHE = "config/lathe.yaml"
 PAIRS = [
-    *((MILL, f"examples/{name}") for name in ("bracket.nc", "cover.nc", "pocket.nc", "tapping.nc", "plate.ngc")),
+    *((MILL, f"examples/{name}") for name in ("bracket.nc", "cover.nc", "pocket.nc")),
     *((LATHE, f"examples/threads/{name}.nc") for name in ("chain", "longitudinal", "taper", "two_starts")),
-    *((LATHE, f"examples/{name}.nc") for name in ("thread", "turning", "lathe", "caxis", "turned_part")),
+    *((LATHE, f"examples/{name}.nc") for name in ("turning", "lathe")),
     *((LATHE, f"examples/manual/{name}.nc") for name in ("longitudinal_thread", "two_starts", "tapered_thread")),
-    *((MILL, f"examples/manual/{name}.nc") for name in ("tapping", "tapping_twice")),
+    (MILL, "examples/manual/tapping.nc"),
     ("examples/probe.yaml", "examples/probe.nc"),
     *((MILL, f"examples/figures/path_{name}.nc") for name in ("corners", "velocity")),
     *((MILL, f"examples/figures/control_circle{name}.nc") for name in ("", "_feedforward")),
@@ -38,12 +38,20 @@ PAIRS = [
     ("examples/spindles/tools.yaml", "examples/spindles/tools.nc"),
     ("examples/spindles/two_channels.yaml", "examples/spindles/channel1.nc"),
 ]
+LONG = [
+    *((MILL, f"examples/{name}") for name in ("tapping.nc", "plate.ngc", "manual/tapping_twice.nc")),
+    *((LATHE, f"examples/{name}.nc") for name in ("thread", "caxis", "turned_part")),
+]
 CYCLES = {
     81: "G81[-5, 2]", 82: "G82[-5, 2, 0.1]", 83: "G83[-9, 2, 4]", 84: "S200 G84[-8, 2, 1.25, 0.1]", 85: "G85[-5, 2]", 86: "M03 S500\nG86[-5, 2]\nM05", 89: "G89[-5, 2, 0.1]",
 }  # fmt: skip
 
 
-@pytest.mark.parametrize(("machine", "program"), PAIRS, ids=lambda name: Path(name).stem)
+@pytest.mark.parametrize(
+    ("machine", "program"),
+    [*PAIRS, *(pytest.param(*pair, marks=pytest.mark.long) for pair in LONG)],
+    ids=lambda name: Path(name).stem,
+)
 def test_an_example_keeps_to_its_path_and_the_axes_to_their_limits(machine: str, program: str) -> None:
     assert findings(machine, program) == []
 

@@ -136,6 +136,7 @@ def test_leaving_the_centre_at_another_angle() -> None:
     assert bench.position("x") == pytest.approx(0.0)
 
 
+@pytest.mark.long
 def test_leaving_the_centre_at_another_angle_on_a_milling_machine() -> None:
     bench = run(on_face("G01 X0 F20\nX-5 C-0.05\nX-10"), machine=lathe(face_kind=2))
     assert errors(bench) == [
@@ -156,6 +157,7 @@ def test_contouring() -> None:
     assert_within_limits(bench)
 
 
+@pytest.mark.long
 def test_random_polygons() -> None:
     draw = random.Random(2788)
     for _ in range(4):

@@ -162,6 +162,7 @@ def test_a_function_that_nobody_waits_for_goes_out_as_the_path_passes() -> None:
     assert v[np.abs(x - 20.0) < 1e-9].min() == 0.0
 
 
+@pytest.mark.long
 def test_hold_override_and_reset_at_random_moments() -> None:
     lines = ["#CONTOUR MODE [DEV PATH_DEV=0.05]", "G261 F6000"]
     corners = [(0, 0), (30, 0), (30, 20), (10, 25), (12, 5), (0, 10), (0, 0)]

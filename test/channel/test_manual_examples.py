@@ -49,6 +49,7 @@ def test_check_finds_no_error(name):
     assert result.output.startswith(f"{name}.nc: no errors in ")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "pitch", "ends"), [("tapping", 1.25, [-50.0]), ("tapping_twice", 1.5, [-50.0, -70.0])]
 )

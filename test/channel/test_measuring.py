@@ -379,6 +379,7 @@ def test_an_axis_that_cannot_measure() -> None:
     assert "axis X cannot measure (P-AXIS-00118); axes that can: none" in turned.refusals()[0]
 
 
+@pytest.mark.long
 def test_a_replay_gives_the_same_bits() -> None:
     text = (EXAMPLES / "probe.nc").read_text()
     bench = run(text, "- {at: 2.005, to: channel, do: measuring_event}")

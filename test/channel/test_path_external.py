@@ -367,6 +367,7 @@ def things(bench: PathBench, choice: random.Random) -> None:
             bench.give("x", "external_setpoints", setpoints=rows)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(8))
 def test_at_random_nothing_jumps_and_all_ends(seed: int) -> None:
     choice, bench = random.Random(seed), PathBench()

@@ -191,6 +191,7 @@ def test_a_line_in_many_blocks_waits_for_them(transition: str) -> None:
     assert 950 <= np.count_nonzero(bench.column("channel", "path_velocity")) <= 1400
 
 
+@pytest.mark.long
 def test_override_hold_and_reset_while_the_interpreter_is_slow() -> None:
     for seed in range(10):
         draw = random.Random(seed)

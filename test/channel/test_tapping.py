@@ -293,6 +293,7 @@ M30
     assert max(bench.column("s2", "set_speed_rpm")[begin : cycles[-1]]) == pytest.approx(500.0)
 
 
+@pytest.mark.long
 def test_replay_gives_the_same_again() -> None:
     bench = run(scenario="- {at: 3.0, to: channel, do: set_override, percent: 40}")
     again, first = replay(bench.machine, bench.records, len(bench.blocks["plc"])), bits(bench)

@@ -65,6 +65,7 @@ def assert_in_step(bench: MachineBench, begin: int) -> None:
     assert velocity[-1] == 0.0 and bench.column("s", "set_speed_rpm")[-1] == 0.0
 
 
+@pytest.mark.long
 def test_a_path_without_its_channel_keeps_the_pitch_to_the_standstill() -> None:
     """Lost at many places: run-up, in the thread, where it brakes, at the reversal and on the way out."""
     taps = blocks_of_taps(TAP)

@@ -94,6 +94,7 @@ def test_the_path_comes_to_rest_where_its_spindle_does(machine, lead, block_cycl
     assert np.flatnonzero(velocity)[-1] <= np.flatnonzero(abs(column(bench, "s", "set_speed_rpm")))[-1] + 10
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(6))
 def test_stops_amid_changes_of_the_speed(seed):
     """Random overrides, leads and blocks of cycles; where the path is still behind, it never turns back."""

@@ -86,6 +86,7 @@ def test_random_overrides_of_the_spindle():
     assert Pass(bench, 4, 2.0).error(1.0, 56.0) < 0.01
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("count", [1, 4, 25])
 def test_other_block_lengths(count):
     bench = cut(THREAD, machine=replace(LATHE, block_cycles=count))

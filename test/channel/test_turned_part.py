@@ -83,6 +83,7 @@ def finished_contour() -> LineString:
     return LineString([*corners, *edge, (-62.0, 22.0), (-66.0, 26.0)])
 
 
+@pytest.mark.long
 def test_finished_diameters(part: ExampleRun) -> None:
     """The nose touches the contour everywhere and is never in it: 20, 30 and 44 mm, chamfers, the edge of 2 mm."""
     x, z = tip(part, 62.0, 40.5)

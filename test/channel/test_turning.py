@@ -70,6 +70,7 @@ def set_speeds(bench: MachineBench) -> list[float]:
 # feed per turn
 
 
+@pytest.mark.long
 def test_feed_per_turn() -> None:
     """0.2 mm in each turn; the way against the angle of the spindle over the whole cut as well."""
     bench = run()
@@ -91,6 +92,7 @@ def test_the_path_goes_through_several_blocks() -> None:
     assert_axes_smooth(bench)
 
 
+@pytest.mark.long
 def test_the_path_follows_the_actual_speed() -> None:
     """The spindle override acts on the feed through the speed, that of the path on top."""
     scenario = (
@@ -168,6 +170,7 @@ def test_the_estimate_has_the_commanded_speed() -> None:
 # constant cutting speed
 
 
+@pytest.mark.long
 def test_cutting_speed_is_constant_on_a_face() -> None:
     """From 100 to 10 mm within 1 %, while the acceleration of the spindle permits; the feed per turn holds."""
     bench = run(FACING)
@@ -180,6 +183,7 @@ def test_cutting_speed_is_constant_on_a_face() -> None:
     assert (x[cut[0]], x[cut[-1]]) == (pytest.approx(50.0, abs=0.2), pytest.approx(5.0, abs=0.6))
 
 
+@pytest.mark.long
 def test_rapid_traverse_and_g97_keep_the_speed() -> None:
     bench = run(FACING)
     speed = bench.column("s", "programmed_speed_rpm")
@@ -207,6 +211,7 @@ def test_the_turning_centre_is_that_of_the_workpiece() -> None:
     assert found == pytest.approx([60.0] * len(found), rel=0.01)
 
 
+@pytest.mark.long
 def test_few_commands_where_the_diameter_stays() -> None:
     """Longitudinal turning: one speed."""
     bench = run("N10 G18 G51 M03 S100\nN20 G00 X60 Z0\nN30 G96 S60 G95 F0.2\nN40 G01 Z-30\nM30")
@@ -236,6 +241,7 @@ def test_reset_and_m5_end_it() -> None:
     assert set_speeds(stopped)[1:] == []
 
 
+@pytest.mark.long
 def test_spindle_override_acts() -> None:
     bench = run(FACING, "- {at: 0.0, to: s, do: set_override, percent: 50}")
     cut = steady(bench, cycles_of(bench, 70))
@@ -243,6 +249,7 @@ def test_spindle_override_acts() -> None:
     assert feeds(bench, cut) == pytest.approx([0.1] * len(cut), rel=0.02)  # feedforward shows each new speed at once
 
 
+@pytest.mark.long
 def test_replay_is_equal_to_the_bit() -> None:
     bench = run(FACING.replace("F0.1", "F0.4"), "- {at: 3.0, to: s, do: set_override, percent: 80}")
     texts, expected = replay(LATHE, bench.records, len(bench.blocks["x"])), bits(bench)
@@ -260,6 +267,7 @@ def test_slaves_follow_without_a_warning() -> None:
     assert bench.column("t", "set_speed_rpm")[-200:] == pytest.approx(bench.column("s", "set_speed_rpm")[-200:])
 
 
+@pytest.mark.long
 def test_a_start_in_mid_program_has_the_cutting_speed() -> None:
     bench = MachineBench(FACING.replace("F0.1", "F0.4"), machine=LATHE, start=False)
     bench.run(0.02)
@@ -271,6 +279,7 @@ def test_a_start_in_mid_program_has_the_cutting_speed() -> None:
     assert cutting_speeds(bench, cut) == pytest.approx([100.0] * len(cut), rel=0.01)
 
 
+@pytest.mark.long
 def test_manual_blocks_keep_it() -> None:
     bench = MachineBench(machine=LATHE, end_when_idle=False)
     bench.run(0.02)

@@ -46,6 +46,7 @@ FRICTION = "without feedforward, with friction compensation"
 ALL = "with feedforward, with friction compensation"
 
 
+@pytest.mark.long
 def test_all_variants_and_directions_are_told(comparison):
     result, pictures = comparison
     assert result.exit_code == 0, result.output
@@ -88,6 +89,7 @@ def response(kv):
     return kv * plant / (1.0 + kv * plant)
 
 
+@pytest.mark.long
 def test_without_friction_the_lag_alone_makes_the_circle_smaller(tmp_path):
     """F = -R·(1 - |G|), circular deviation 0; feedforward brings the nominal radius back."""
     plain = {"simulation": {"model": "FIRST_ORDER"}}
@@ -390,6 +392,7 @@ def test_better_and_worse_are_told_apart(before, after, text):
     assert lines[1:] == [f"  {name:14}{changes}" for name in ("G", "largest |F|", "largest peak")]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("more", "files"),
     [([], ["run.mcap"]), (["--compare", "friction"], ["run_1.mcap", "run_2.mcap"])],

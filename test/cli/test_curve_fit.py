@@ -169,6 +169,7 @@ def as_written(curve):
     return curve._replace(b1=rounded(curve.b1), b2=rounded(curve.b2), b3=rounded(curve.b3))
 
 
+@pytest.mark.long
 def test_what_the_command_accepts_the_machine_accepts(tmp_path):
     """Random points, some with a floor: the same verdict about poles and zeros; only a rise is refused here alone."""
     draw, verdicts = random.Random(22), []

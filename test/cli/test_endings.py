@@ -70,6 +70,7 @@ def test_end_request():
         assert end.over(-1.0), "patience is at its end"
 
 
+@pytest.mark.long
 def test_recording_that_grows_too_large_ends_and_the_run_continues(tmp_path):
     recording = tmp_path / "run.mcap"
     done = subprocess.run(

@@ -380,6 +380,7 @@ def test_a_torque_that_scatters_is_warned_about(tmp_path):
     assert f"# warning: {text}" in result.stdout.splitlines()
 
 
+@pytest.mark.long
 def test_axes_without_friction_have_no_table():
     """z has a drive of first order: what its torque shows at constant velocity is rounding."""
     result = call("identify", "friction", "z", "--machine", MILL)

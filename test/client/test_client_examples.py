@@ -36,6 +36,7 @@ def test_five_lines() -> None:
     assert run("client_five_lines.py") == "100.0\n"
 
 
+@pytest.mark.long
 def test_moved_and_measured() -> None:
     """Without feedforward the lag at a steady velocity is v / Kv, Kv = 50 1/s (P-AXIS-00099)."""
     first, *rows, with_feedforward = run("client_measure.py").splitlines()[:5]

@@ -538,3 +538,61 @@ def test_a_machine_that_is_closed_lets_go_what_mc_stop_holds(tmp_path: Path) -> 
         ("hold_stop", '{"enabled": true}'),
         ("hold_stop", '{"enabled": false}'),
     ]
+
+
+PLC_OF_Y = """
+from cnc_ptp.plc.plcopen import MC_MoveAbsolute
+
+
+class Plc:
+    def __init__(self, io):
+        self.move = MC_MoveAbsolute(io.axis("y"))
+
+    def cycle(self, io):
+        self.move(io.axis("x").actual_position > 20.0, position=30.0)
+"""
+
+
+def test_a_plc_in_a_file_and_a_scenario_beside_the_client(tmp_path: Path) -> None:
+    """The PLC reacts to what the client moves; the scenario gives the override; the recording has them and replays."""
+    plc, scenario, path = tmp_path / "plc.py", tmp_path / "scenario.yaml", tmp_path / "a.mcap"
+    plc.write_text(PLC_OF_Y)
+    scenario.write_text("- {at: 0.05, to: x, do: set_override, percent: 50}\n")
+    with Machine.offline(PTP, record=path, scenario=scenario, plc=plc) as m:
+        m.x.move_absolute(40.0).wait()
+        m.wait_until(lambda: m.y.state.set_position == 30.0, timeout=10.0)
+        assert m.x.state.override_percent == 50.0
+    recorded = verified(path)
+    assert recorded.attachments["plc/plc.py"] == PLC_OF_Y and "set_override" in recorded.attachments["scenario.yaml"]
+    assert {(each.target, each.command) for each in recorded.commands} >= {
+        ("x", "set_override"),
+        ("x", "move_absolute"),
+        ("y", "move_absolute"),
+    }
+
+
+def test_a_plc_or_a_scenario_that_cannot_be_used_starts_nothing(tmp_path: Path) -> None:
+    missing = tmp_path / "none"
+    text = f"PLC file {missing} cannot be read: No such file or directory; nothing was started"
+    assert refusal(lambda: Machine.offline(PTP, plc=missing))[:2] == (26110, text)
+    assert refusal(lambda: Machine.start(PTP, plc=missing))[:2] == (26110, text)
+    wrong = tmp_path / "plc.py"
+    wrong.write_text("x = 1\n")
+    assert refusal(lambda: Machine.offline(PTP, plc=wrong))[0] == 25104
+    text = f"scenario {missing} cannot be read: No such file or directory; nothing was started"
+    assert refusal(lambda: Machine.offline(PTP, scenario=missing))[:2] == (26110, text)
+    assert refusal(lambda: Machine.offline(PTP, record=wrong, plc=wrong))[0] == 26117
+
+
+def test_a_plc_in_a_file_that_fails_stops_the_machine_of_the_client(tmp_path: Path) -> None:
+    plc = tmp_path / "plc.py"
+    plc.write_text(
+        "class Plc:\n    def cycle(self, io):\n        if io.time > 0.5:\n            raise ValueError('no tool')\n"
+    )
+    with Machine.offline(PTP, plc=plc) as m:
+        events, job = m.events(duration=2.0), m.x.move_absolute(2000.0)
+        with pytest.raises(CncError):
+            job.wait()
+        m.wait_until(lambda: m.x.state.set_velocity == 0.0, timeout=5.0)
+        assert 500.0 < m.x.state.set_position < 1500.0
+        assert 22161 in [event.error_id for event in events]

@@ -94,6 +94,7 @@ def test_the_deviation_is_twice_the_least_that_noise_allows():
     assert fit.deviation == pytest.approx(2.0 * noise / np.linalg.norm(slope), rel=0.3)
 
 
+@pytest.mark.long
 def test_nineteen_of_twenty_results_are_within_their_deviation():
     command, inside = np.tile(ramps(), 2), 0
     actual = response(command, 0.010)
@@ -138,6 +139,7 @@ def test_an_axis_held_by_friction_at_rest_does_not_count():
     assert fit_drive(held).time_constant == pytest.approx(0.004, rel=0.1)
 
 
+@pytest.mark.long
 def test_a_long_recording_is_cut():
     fit = fit_drive(recording(0.004, command=np.tile(ramps(), 30)))
     assert fit.cycles == 20_000

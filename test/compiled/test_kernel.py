@@ -53,7 +53,9 @@ def call(*arguments: object, pure: bool = False, folder: Path = ROOT) -> subproc
     return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
 
 
-@pytest.mark.parametrize("run", RUNS)
+@pytest.mark.parametrize(
+    "run", [run if run != "bracket" else pytest.param(run, marks=pytest.mark.long) for run in RUNS]
+)
 @compiled_only
 def test_both_kernels_give_the_same_bits(run: str, tmp_path: Path) -> None:
     files = tmp_path / "compiled" / "run.mcap", tmp_path / "interpreted" / "run.mcap"

@@ -157,6 +157,7 @@ def random_plan(draw: random.Random, cycles: int) -> dict[int, tuple[bool, float
     return plan
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "mode", [VEL, ACC, VEL | ACC, ADD_VEL, ADD_ACC, ADD_VEL | ADD_ACC, ADD_VEL | ADD_ACC | ADD_JERK]
 )

@@ -55,6 +55,7 @@ def test_coulomb_friction_alone() -> None:
     assert deviation.torque < 2e-5
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "of",
     [

@@ -156,3 +156,15 @@ def test_an_aborted_motion_and_an_error() -> None:
     assert error == [edges(name, "first.execute")[1]] and signal(name, "stop.execute")[error[0]] == 1.0
     assert edges(name, "first.error", rising=False) == [edges(name, "first.execute", rising=False)[1]]
     assert len(edges(name, "first.done")) == 1 and x(name, "set_position")[-1] == 500.0
+
+
+def test_the_reference_is_set_while_the_drive_is_commanded() -> None:
+    """TX1250 4.2: the reference point lies at 100 mm once S-0-0403 is 1, and the axis ends 20 mm behind it."""
+    name = "plc_sercos_homing"
+    [begin], [end] = edges(name, "commanded"), edges(name, "commanded", rising=False)
+    [reference] = edges(name, "referenced")
+    position = x(name, "set_position")
+    jump = int(np.argmax(np.abs(np.diff(position))))
+    assert begin < jump // BLOCK <= reference < end
+    assert position[jump + 1] == pytest.approx(100.0, abs=0.01) and position[-1] == pytest.approx(120.0)
+    assert np.abs(np.diff(position[: end * BLOCK])).max() == pytest.approx(np.abs(np.diff(position)).max())

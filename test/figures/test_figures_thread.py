@@ -51,7 +51,11 @@ def test_a_tapped_hole_is_one_pass() -> None:
     ("name", "texts"),
     [
         ("thread_two_starts", ["pass 1", "pass 2", "actual position of Z in mm"]),
-        ("caxis_surfaces", ["#FACE [X, C]: y over x in mm", "#CYL [Z, C, X25]: Z over the circumference in mm"]),
+        pytest.param(
+            "caxis_surfaces",
+            ["#FACE [X, C]: y over x in mm", "#CYL [Z, C, X25]: Z over the circumference in mm"],
+            marks=pytest.mark.long,
+        ),
     ],
 )
 def test_pictures_name_what_they_show(name: str, texts: list[str]) -> None:

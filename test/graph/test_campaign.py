@@ -30,6 +30,7 @@ def test_a_suspended_graph_goes_on(tmp_path: Path, ros_domain: int) -> None:
     assert row.problems == [] and row.figures["cycles"] > 4000
 
 
+@pytest.mark.long
 def test_a_seed_gives_the_same_faults_of_every_case() -> None:
     first, again, other = (list(zip(range(200), kills.faults(seed), strict=False)) for seed in (5, 5, 6))
     assert first == again != other

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from click.testing import CliRunner, Result
 from graph_support import MILL, run
+from long_support import long
 
 from cnc_ptp import cli
 
@@ -15,7 +16,7 @@ def call(*arguments: object) -> Result:
     return CliRunner().invoke(cli.main, [str(argument) for argument in arguments])
 
 
-@pytest.mark.parametrize("options", [["--free-run"], ["--composed"]], ids=str)
+@pytest.mark.parametrize("options", [["--free-run"], *long([["--composed"]])], ids=str)
 def test_a_replay_of_a_graph_begins_at_a_checkpoint(options, tmp_path):
     (tmp_path / "lines.nc").write_text(PROGRAM)
     path = tmp_path / "graph.mcap"

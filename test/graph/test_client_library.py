@@ -12,7 +12,7 @@ import time
 import psutil
 import pytest
 from client_stories import BLOCKS_EXPECTED, EXPECTED, block_story, refusal, setpoints, story
-from graph_support import one_axis_machine, small_machine, verified, wait_until_gone
+from graph_support import ROOT, one_axis_machine, small_machine, verified, wait_until_gone
 
 from cnc_ptp.client import CncError, JobStatus, Machine, MC_ReadParameter
 from cnc_ptp.client.graph_link import GraphLink
@@ -108,6 +108,24 @@ def test_what_cannot_be_started(m, mill, folder):
         26176,
         f"the graph of {mill} did not start: it was not running within 0 s; nothing has moved",
     )
+
+
+def test_a_plc_in_a_file_and_a_scenario_serve_the_graph_that_is_started(m, folder):
+    """As offline: test/client/test_offline.py."""
+    plc, scenario, path = folder / "plc.py", folder / "scenario.yaml", folder / "plc.mcap"
+    plc.write_text(
+        "from cnc_ptp.plc.plcopen import MC_MoveAbsolute\n\n\n"
+        "class Plc:\n    def __init__(self, io):\n        self.move = MC_MoveAbsolute(io.axis('y'))\n\n"
+        "    def cycle(self, io):\n        self.move(io.axis('x').actual_position > 20.0, position=30.0)\n"
+    )
+    scenario.write_text("- {at: 0.05, to: x, do: set_override, percent: 50}\n")
+    with Machine.start(
+        ROOT / "config" / "ptp.yaml", record=path, scenario=scenario, plc=plc, composed=True, namespace="b"
+    ) as other:
+        other.x.move_absolute(40.0).wait(30.0)
+        other.wait_until(lambda: other.y.state.set_position == 30.0, timeout=30.0)
+        assert other.x.state.override_percent == 50.0
+    assert verified(path).attachments["plc/plc.py"] == plc.read_text()
 
 
 def test_no_machine_to_connect_to(m, ros_domain):
@@ -300,6 +318,7 @@ def test_a_stopped_client_does_not_know_how_its_job_has_ended(m, mill):
     m.x.move_absolute(0).wait(30.0)
 
 
+@pytest.mark.long
 def test_a_machine_that_falls_silent_is_gone(ros_domain, folder):
     machine = one_axis_machine(folder)
     with Machine.start(machine, namespace="silent", composed=True) as m, Machine.connect(namespace="silent") as other:
@@ -329,6 +348,7 @@ def test_a_unit_that_says_nothing(m, monkeypatch):
     link.close()
 
 
+@pytest.mark.long
 def test_a_graph_that_does_not_react_is_killed(ros_domain, folder, monkeypatch):
     monkeypatch.setattr("cnc_ptp.client.graph_link.STOP_TIME", 1.0)
     monkeypatch.setattr("cnc_ptp.client.started_graph.STOP_TIME", 1.0)

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from graph_support import MILL, PTP, SHORT_PROGRAM, SHORT_SCENARIO, run, states_equal, verified
+from long_support import long
 from mcap.reader import make_reader
 from mcap.writer import Writer
 
@@ -139,7 +140,7 @@ def test_ptp_graph_equals_the_offline_run(folder):
     assert len(verified(folder / "b.mcap").states) == 4
 
 
-graphs = pytest.mark.parametrize("options", [["--free-run"], ["--composed", "--free-run"]], ids=" ".join)
+graphs = pytest.mark.parametrize("options", [["--free-run"], *long([["--composed", "--free-run"]])], ids=" ".join)
 """Real time only where the clock has a part in it: test_graph_equals_the_offline_run."""
 
 
@@ -157,6 +158,7 @@ def test_slaves_in_the_graph_equal_the_offline_run(folder, options):
     assert np.abs(y + 0.5 * x).max() <= 1e-9 and x[-1] > 500.0
 
 
+@pytest.mark.long
 @graphs
 def test_programs_that_are_interpreted_while_they_run_equal_the_offline_run(folder, options):
     """Actual positions, a cycle, tools and offsets in files of their own, a computation of many cycles, a message."""
@@ -274,6 +276,7 @@ LINKED_SCENARIO = """
 """
 
 
+@pytest.mark.long
 @graphs
 def test_linked_blocks_in_the_graph_equal_the_offline_run(folder, options):
     """Corners, arcs and short blocks that the path runs through, with override and feed hold."""
@@ -306,7 +309,7 @@ M30
 """
 
 
-@pytest.mark.parametrize("bad", [False, True], ids=["good", "bad"])
+@pytest.mark.parametrize("bad", [*long([False]), True], ids=["good", "bad"])
 @graphs
 def test_a_program_that_is_read_while_it_runs_equals_the_offline_run(folder, options, bad):
     """Too few blocks for the feed, override and feed hold, a subroutine, a loop, an actual position; or a fault."""
@@ -330,6 +333,7 @@ def test_a_program_that_is_read_while_it_runs_equals_the_offline_run(folder, opt
         assert (reason in result.stdout + result.stderr) == bad
 
 
+@pytest.mark.long
 @graphs
 def test_superpositions_on_a_path_equal_the_offline_run(folder, options):
     """The flying saw and external setpoints on top of a circle, with z as the conveyor."""
@@ -444,7 +448,7 @@ WITH_SPINDLE = {"thread": THREAD, "turning": TURNING, "c_axis": C_AXIS}
 
 
 @graphs
-@pytest.mark.parametrize("motion", list(WITH_SPINDLE))
+@pytest.mark.parametrize("motion", ["turning", *long(["thread", "c_axis"])])
 def test_path_with_a_spindle_in_the_graph_equals_the_offline_run(folder, motion, options):
     """The path follows the reports of a spindle in another process, or moves it as its C axis."""
     (folder / "spindle.nc").write_text(WITH_SPINDLE[motion])

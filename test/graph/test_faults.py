@@ -5,6 +5,7 @@ from functools import partial
 import pytest
 import rclpy
 from graph_support import MILL, PTP, run
+from long_support import long
 from rclpy.node import Node
 from recording_support import Blocks
 from spin_support import spin_until
@@ -174,7 +175,7 @@ def test_looking_whether_a_recording_can_be_written_changes_nothing(tmp_path):
         ("two", "failed to initialize rcl: ROS_DOMAIN_ID is not an integral number"),
     ],
 )
-@pytest.mark.parametrize("options", [[], ["--composed"]], ids=str)
+@pytest.mark.parametrize("options", [[], *long([["--composed"]])], ids=str)
 def test_no_such_domain(domain, reason, options, monkeypatch):
     monkeypatch.setenv("ROS_DOMAIN_ID", domain)
     error = run("run", MILL, *options, expect=2).stderr

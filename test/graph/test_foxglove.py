@@ -8,6 +8,7 @@ import time
 
 import pytest
 from graph_support import run, verified
+from long_support import long
 from mcap.records import Schema
 from mcap_ros2.decoder import DecoderFactory
 from recording_support import smooth_blocks
@@ -139,7 +140,7 @@ def test_without_the_package(port, monkeypatch):
     )
 
 
-@pytest.mark.parametrize("composed", [[], ["--composed"]], ids=["graph", "composed"])
+@pytest.mark.parametrize("composed", [[], *long([["--composed"]])], ids=["graph", "composed"])
 def test_a_running_machine_streams_what_it_records(port, tmp_path, composed):
     record = ["--record", str(tmp_path / "run.mcap")] if composed else []
     command = [sys.executable, "-m", "cnc_ptp", "run", "config/ptp.yaml", "--duration", "8", *composed, *record]
@@ -157,6 +158,7 @@ def test_a_running_machine_streams_what_it_records(port, tmp_path, composed):
     assert process.returncode == 0, process.stdout.read()
 
 
+@pytest.mark.long
 def test_a_stream_beside_parts_and_the_last_seconds(port, tmp_path):
     """All of the recorder at once: parts, the last seconds, the live stream."""
     folder = tmp_path / "run"

@@ -44,6 +44,7 @@ def test_a_turning_spindle_comes_to_rest_on_its_ramp_before_its_node_ends(tmp_pa
     assert max(abs(speed)) > 10_000.0 and speed[-1] == 0.0
 
 
+@pytest.mark.long
 def test_commands_notice_that_the_machine_is_gone(tmp_path):
     """Killed as a power failure does it: `do --wait`, `jog` and `watch` end, each with status 1."""
     graph = Running(small_machine(tmp_path), "--stay", "--composed")

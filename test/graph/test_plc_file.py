@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from graph_support import MILL, PTP, run, states_equal, verified
+from long_support import long
 
 from cnc_ptp.recording.reader import read_recording
 
@@ -54,7 +55,7 @@ def folder(tmp_path_factory):
     return folder
 
 
-@pytest.mark.parametrize("options", [[], ["--free-run"], ["--composed"]], ids=str)
+@pytest.mark.parametrize("options", [*long([[]]), ["--free-run"], *long([["--composed"]])], ids=str)
 @pytest.mark.parametrize("name", [*JOBS, "moves"])
 def test_a_plc_in_the_graph_equals_the_offline_run(folder, name, options):
     job = {**JOBS, "moves": (PTP, "--plc", folder / "moves.py")}[name]
@@ -84,7 +85,7 @@ TRIGGERS = {
 """PLC file -> condition, whether it holds in the first block, cycle before which it cannot (TX1250 4.3: the start)."""
 
 
-@pytest.mark.parametrize("options", [[], ["--composed"]], ids=str)
+@pytest.mark.parametrize("options", [[], *long([["--composed"]])], ids=str)
 @pytest.mark.parametrize("name", TRIGGERS)
 def test_a_recording_with_a_trigger_begins_with_the_same_block(folder, name, options):
     condition, holds, before = TRIGGERS[name]
@@ -118,7 +119,7 @@ FAULTS = {
 }
 
 
-@pytest.mark.parametrize("options", [[], ["--composed"]], ids=str)
+@pytest.mark.parametrize("options", [[], *long([["--composed"]])], ids=str)
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_plc_that_fails_stops_the_machine_on_its_ramps(tmp_path, fault, options):
     file, recording = tmp_path / "plc.py", tmp_path / "run.mcap"
@@ -190,6 +191,7 @@ class Plc:
 """
 
 
+@pytest.mark.long
 def test_a_plc_whose_cycles_keep_taking_too_long_stops_the_machine(tmp_path):
     """40 ms behind with each cycle: the sixth one is above 200 ms at the latest. In a free run it only takes longer."""
     file, recording = tmp_path / "plc.py", tmp_path / "run.mcap"

@@ -3,6 +3,7 @@
 import pytest
 import rclpy
 from graph_support import PTP, Running, kill, run, states_equal, verified
+from long_support import long
 from rosbags.rosbag2 import Reader
 
 from cnc_ptp.client import CncError, Machine, RecorderOptions
@@ -58,7 +59,7 @@ def full_blocks(path):
     return first, last
 
 
-@pytest.mark.parametrize("options", [[], ["--composed"]], ids=str)
+@pytest.mark.parametrize("options", [[], *long([["--composed"]])], ids=str)
 def test_recordings_of_a_running_graph_can_be_computed_again(tmp_path, asker, options):
     scenario = tmp_path / "story.yaml"
     scenario.write_text(SCENARIO)
@@ -89,6 +90,7 @@ def test_recordings_of_a_running_graph_can_be_computed_again(tmp_path, asker, op
         graph.end()
 
 
+@pytest.mark.long
 def test_commands_of_the_command_line(tmp_path):
     graph = Running(PTP, "--duration", "60", "--keep", "3")
     try:
@@ -111,7 +113,7 @@ def test_commands_of_the_command_line(tmp_path):
         graph.end()
 
 
-@pytest.mark.parametrize("options", [[], ["--split", "1s"]], ids=["file", "parts"])
+@pytest.mark.parametrize("options", [*long([[]]), ["--split", "1s"]], ids=["file", "parts"])
 def test_a_killed_recorder_leaves_a_recording_that_every_reader_opens(tmp_path, options):
     graph = Running(PTP, "--stay", "--recorder", *options)
     try:
@@ -150,6 +152,7 @@ def test_the_client_of_a_graph_records(tmp_path, monkeypatch):
     assert first == taken.cycle and 300 <= last - first + 1 <= 320
 
 
+@pytest.mark.long
 def test_without_a_recorder(tmp_path):
     graph = Running(PTP, "--duration", "60")
     try:

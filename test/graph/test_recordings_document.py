@@ -4,11 +4,13 @@ import re
 import shlex
 import shutil
 
+import pytest
 from graph_support import ROOT, Running, run
 
 from cnc_ptp.recording.stored_states import read_stored
 
 
+@pytest.mark.long
 def test_recording_on_demand(tmp_path, monkeypatch):
     text = (ROOT / "docs" / "recordings.md").read_text()
     first, then = re.findall(r"^```\n(.*?)^```$", text.partition("## Recording on demand")[2], re.M | re.S)[:2]

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import yaml
 from graph_support import MILL, run, states_equal, verified
+from long_support import long
 
 PROGRAM = """%channels
 N10 M41 S600 M3
@@ -84,7 +85,7 @@ class Plain(yaml.SafeDumper):
         return True
 
 
-@pytest.mark.parametrize("options", [[], ["--composed", "--free-run"]], ids=str)
+@pytest.mark.parametrize("options", [*long([[]]), ["--composed", "--free-run"]], ids=str)
 def test_channels_with_spindles_in_the_graph_equal_the_offline_run(tmp_path, options):
     machine = machine_of(tmp_path)
     (tmp_path / "p.nc").write_text(PROGRAM)

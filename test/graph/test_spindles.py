@@ -8,6 +8,7 @@ import yaml
 from action_msgs.msg import GoalStatus
 from client_support import beside_composed_run
 from graph_support import MILL, run, states_equal, verified
+from long_support import long
 
 from cnc_ptp import action, srv
 
@@ -46,7 +47,7 @@ def machine_of(folder):
     return path
 
 
-@pytest.mark.parametrize("options", [[], ["--composed", "--free-run"]], ids=str)
+@pytest.mark.parametrize("options", [*long([[]]), ["--composed", "--free-run"]], ids=str)
 def test_coupled_spindles_in_the_graph_equal_the_offline_run(tmp_path, options):
     (tmp_path / "job.yaml").write_text(SCENARIO)
     job = (machine_of(tmp_path), "--scenario", tmp_path / "job.yaml")

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from client_support import connected
 from graph_support import PTP, TIMEOUT, Running, command, run, states_equal, verified
+from long_support import long
 from scipy.interpolate import CubicHermiteSpline
 from trajectory_msgs.msg import JointTrajectory
 from trajectory_support import TrajectoryClient, duration, trajectory
@@ -174,7 +175,7 @@ def test_the_recording_is_computed_again(graph, client, recording):
     verified(recording)
 
 
-@pytest.mark.parametrize("options", [[], ["--composed"]], ids=str)
+@pytest.mark.parametrize("options", [[], *long([["--composed"]])], ids=str)
 def test_the_graph_equals_the_offline_run(tmp_path, options):
     scenario = tmp_path / "s.yaml"
     scenario.write_text(SCENARIO)

@@ -12,6 +12,7 @@ from ament_index_python.packages import get_package_prefix
 
 from cnc_ptp.compiled.sources import library_file, state_file
 
+pytestmark = pytest.mark.long
 ROOT = Path(__file__).parents[2]
 SOURCES = (
     "cnc_ptp",

@@ -71,6 +71,7 @@ def assert_lands_at_the_same_end(problems: list[Problem], profiles: list[Profile
             assert t + profile.duration >= duration * (1 - 1e-5), (problems[number], problem)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("chunk", CHUNKS)
 def test_any_problem_is_solved_exactly_in_shortest_time_and_again_from_any_state(chunk):
     problems = random_problems(chunk, CHUNK)

@@ -61,6 +61,7 @@ def cases(*, lines_only: bool) -> list[tuple[int, list[Edge], list[Edge], float]
     return found
 
 
+@pytest.mark.long
 def test_two_hundred_contours_of_lines_and_arcs_by_distances() -> None:
     for seed, contour, path, radius in cases(lines_only=False):
         points = np.vstack([edge.points(33) for edge in path])
@@ -102,6 +103,7 @@ def test_a_mirrored_face_has_the_path_of_the_mirrored_contour() -> None:
     assert mirrored[1:] == plain[1:]
 
 
+@pytest.mark.long
 def test_two_hundred_contours_of_lines_by_shapelys_offset() -> None:
     for seed, contour, path, radius in cases(lines_only=True):
         ring = polygon(contour).buffer(radius, quad_segs=2000).exterior

@@ -108,6 +108,7 @@ def test_how_much_was_executed_never_decreases() -> None:
     assert places == sorted(places) and places[0] == 7 and program.size == len(text)
 
 
+@pytest.mark.long
 def test_structures_of_lines_that_have_been_executed_are_forgotten() -> None:
     """30,000 conditions on end; a loop is repeated though much of what follows it is known."""
     body = "\n".join(["$IF P1", "P2 = P2 + 1", "$ENDIF"] * 30_000)

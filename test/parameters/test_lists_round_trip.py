@@ -293,6 +293,7 @@ def test_the_mill_of_lists_runs_as_the_mill(tmp_path: Path) -> None:
     assert of_lists == of_file
 
 
+@pytest.mark.long
 def test_a_large_machine_comes_back() -> None:
     files = lists_of(32, 16)
     first = import_lists("f", files, strict=True)

@@ -122,7 +122,7 @@ def test_near_the_optimum_of_topp_ra(seed: int) -> None:
     assert_within(states, [axis] * 3)
 
 
-@pytest.mark.parametrize("seed", [0, *long(range(1, 5))])
+@pytest.mark.parametrize("seed", [1, *long([0, 2, 3, 4])])
 def test_near_the_optimum_with_jerk(seed: int) -> None:
     """A solver over all of the path at once."""
     curve = smooth_curve(100 + seed)
@@ -137,6 +137,7 @@ def test_near_the_optimum_with_jerk(seed: int) -> None:
     assert len(states) * CYCLE <= 1.10 * best
 
 
+@pytest.mark.long
 def test_override_to_0_and_back_at_random_moments() -> None:
     """Limits hold, nothing steps, and the end is reached exactly."""
     curve = smooth_curve(7)

@@ -56,6 +56,7 @@ def test_a_long_line_takes_as_long_as_its_closed_form() -> None:
     assert sine_from_rest(0.0, 400.0, limits).duration == pytest.approx(expected, rel=1e-12)
 
 
+@pytest.mark.long
 def test_random_starts() -> None:
     chance = random.Random(7)
     for _ in range(40):
@@ -73,6 +74,7 @@ def test_random_starts() -> None:
             assert_consistent(profile, LIMITS)
 
 
+@pytest.mark.long
 def test_overrides_and_holds_at_random_moments() -> None:
     """The path interpolator changes its profile only where a ramp ends; every cycle continues the one before."""
     chance = random.Random(11)

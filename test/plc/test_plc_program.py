@@ -179,6 +179,7 @@ def refused(io: Any) -> None:
     io.axis("x").give("move_absolute", target=1e9)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("cycle", [lambda io: None, refused], ids=["nothing", "refused in every block"])
 def test_a_plc_that_moves_nothing_for_a_minute_ends_the_run(cycle: Any) -> None:
     bench = PlcBench(lambda io: Steps(cycle)).run()

@@ -163,6 +163,7 @@ def position():
     return lambda cycle: 40.0 * math.cos(speed * 0.001 * cycle) + 40.0 * speed * math.sin(speed * 0.001 * cycle) / 16.7
 
 
+@pytest.mark.long
 def test_zoomed_plots_show_every_cycle(probe, position):
     cycles = [round(time * 1000) for time in probe["zoomed"]["x"]]
     assert set(range(250, 301)) <= set(cycles) <= set(range(248, 303))

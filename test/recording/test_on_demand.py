@@ -381,6 +381,7 @@ def saved_of(cut, saved):
         return 0
 
 
+@pytest.mark.long
 def test_a_recording_on_demand_that_was_cut_anywhere(tmp_path):
     path, cut, saved = (tmp_path / f"{name}.mcap" for name in ("a", "cut", "saved"))
     story = Story().run(0.3)

@@ -2,6 +2,7 @@
 
 import pytest
 from click.testing import CliRunner
+from long_support import long
 from mcap.reader import make_reader
 from mcap.writer import Writer
 from recording_support import MACHINE, smooth_run
@@ -23,7 +24,8 @@ def messages(path):
         return [(channel.topic, message.log_time, message.data) for _, channel, message in reader.iter_messages()]
 
 
-def test_every_byte_at_which_a_file_may_be_cut(tmp_path):
+@pytest.mark.parametrize("step", [13, *long([1])])
+def test_every_byte_at_which_a_file_may_be_cut(tmp_path, step):
     whole, cut, output = tmp_path / "whole.mcap", tmp_path / "cut.mcap", tmp_path / "new" / "out.mcap"
     output.parent.mkdir()
     with Recording(whole, MACHINE) as recording:
@@ -32,7 +34,7 @@ def test_every_byte_at_which_a_file_may_be_cut(tmp_path):
             recording.flush()
     data, expected, counts = whole.read_bytes(), messages(whole), []
     assert len(expected) == 3
-    for size in range(len(data) + 1):
+    for size in [*range(0, len(data), step), len(data)]:
         cut.write_bytes(data[:size])
         if size < 8:
             with pytest.raises(CncError, match="not an MCAP file"):

@@ -114,6 +114,7 @@ def peak_of(call):
         tracemalloc.stop()
 
 
+@pytest.mark.long
 def test_neither_a_verification_nor_an_identification_has_all_states_in_memory(tmp_path):
     path = tmp_path / "run.mcap"
     with Recording(path, MACHINE, chunk_seconds=0.2) as recording:

@@ -40,6 +40,7 @@ def ranges_of(text: str) -> list[tuple[int, int]]:
     return [(int(first), int(last or first)) for first, last in re.findall(r"\b(\d{5})\b(?: – (\d{5}))?", text)]
 
 
+@pytest.mark.long
 def test_commands_print_what_the_text_says(tmp_path: Path) -> None:
     (tmp_path / "runs").mkdir()
     for name in LINKS:

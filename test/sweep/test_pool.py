@@ -53,6 +53,7 @@ def test_four_workers_of_which_one_is_killed_give_the_same_bytes(tmp_path, expec
     assert sweep.target.read_bytes() == expected
 
 
+@pytest.mark.long
 def test_a_variant_that_kills_its_workers_is_a_row_and_the_others_are_computed(tmp_path, monkeypatch):
     monkeypatch.setattr(pool_module, "compute", deadly)
     sweep = sweep_in(tmp_path)
@@ -62,6 +63,7 @@ def test_a_variant_that_kills_its_workers_is_a_row_and_the_others_are_computed(t
     assert (row.error, row.message) == (26188, "the worker process dies whenever it computes this variant")
 
 
+@pytest.mark.long
 def test_a_worker_that_dask_has_given_up_is_started_again(tmp_path, expected):
     sweep = sweep_in(tmp_path)
     with Pool(1, None) as pool:

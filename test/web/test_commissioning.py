@@ -18,6 +18,7 @@ def machine(tmp_path):
     return shutil.copy(MILL, tmp_path / "mill.yaml")
 
 
+@pytest.mark.long
 def test_an_axis_is_identified_and_accepted(machine, tmp_path):
     async def story():
         async with site(machine) as here:

@@ -183,6 +183,7 @@ def test_a_page_that_takes_nothing_is_cut_off(monkeypatch):
     run(story)
 
 
+@pytest.mark.long
 def test_the_process_that_draws_dies_again_and_again():
     async def story(here):
         page = await here.page()

@@ -155,6 +155,7 @@ def test_a_program_that_cannot_be_drawn():
     run(story)
 
 
+@pytest.mark.long
 def test_tasks_that_are_not_possible(tmp_path):
     with pytest.raises(CncError) as error:
         Tasks(None).identify({"type": "identify", "axis": "x", "what": "friction"}, ["x"])

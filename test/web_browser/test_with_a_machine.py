@@ -348,6 +348,7 @@ def test_a_reset_withdraws_what_is_to_be_acknowledged(waiting, programs):
     assert page.evaluate("app.store.units.x.set_position") == 0
 
 
+@pytest.mark.long
 def test_friction_is_identified_and_its_values_become_a_new_file(tuned, tmp_path):
     page = tuned("commission")
     before = (tmp_path / "mill.yaml").read_bytes()

@@ -14,7 +14,6 @@ from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.subscription import Subscription
-from rclpy.timer import Timer
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
@@ -123,7 +122,7 @@ class UnitNode(PollingNode):
         self._scheduled_ns: dict[int, int] = {}
         self._told_twice: set[str] = set()
         self._masters: set[str] = set()
-        self._looking: Timer | None = None
+        self._looking: process.SteadyTimer | None = None
         self._free_run = free_run
         self._handover = handover
         self._running = False

@@ -19,6 +19,11 @@ class Synchronisation(IntFlag):
     MVS_SLP = 0x00008000  # given out in the block, waited for at #EXPL SYN
     PLC_INFO = 0x00020000  # added to one of them: the PLC gets the spindle function too and must acknowledge it
 
+    @property
+    def constants(self) -> str:
+        """Their names joined by |, as a parameter has them."""
+        return " | ".join(constant.name or "" for constant in Synchronisation if constant & self)
+
 
 def synchronisation(constants: str) -> Synchronisation:
     """The value of constants joined by |, in the spelling that the loader makes; NOT_VALID counts as NO_SYNCH."""

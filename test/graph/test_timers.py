@@ -1,0 +1,43 @@
+"""Timers of nodes, in an executor that lets them stand (as that of the wheels does while the wall clock is set back)."""
+
+from __future__ import annotations
+
+import time
+from itertools import pairwise
+
+import pytest
+import rclpy
+from rclpy.node import Node
+
+from cnc_ptp.nodes import process
+
+
+class Standing(Node):
+    """Its executor calls none of its timers in time."""
+
+    def create_timer(self, period, call, clock):
+        return super().create_timer(1e6, call, clock=clock)
+
+
+@pytest.fixture
+def node(ros_domain):
+    rclpy.init(domain_id=ros_domain)
+    yield Standing("standing")
+    rclpy.try_shutdown()
+
+
+def test_a_timer_that_stands_is_called_by_the_loop(node):
+    called = []
+    process.timer(node, 0.02, lambda: called.append(time.monotonic()))
+    began = time.monotonic()
+    process.spin([node], done=lambda: len(called) >= 5, wait=lambda: 0.005)
+    assert all(later - earlier >= 0.04 for earlier, later in pairwise([began, *called]))
+    assert called[-1] - began < 5.0
+
+
+def test_one_that_was_cancelled_is_not(node):
+    called = []
+    timer = process.timer(node, 0.01, lambda: called.append(timer.cancel()))
+    end = time.monotonic() + 0.3
+    process.spin([node], done=lambda: time.monotonic() > end, wait=lambda: 0.005)
+    assert called == [None]
