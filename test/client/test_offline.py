@@ -22,6 +22,7 @@ from cnc_ptp.client import (
     AxisStateCode,
     ChannelStateCode,
     CncError,
+    Event,
     JobStatus,
     Machine,
     MC_MoveAbsolute,
@@ -590,9 +591,12 @@ def test_a_plc_in_a_file_that_fails_stops_the_machine_of_the_client(tmp_path: Pa
         "class Plc:\n    def cycle(self, io):\n        if io.time > 0.5:\n            raise ValueError('no tool')\n"
     )
     with Machine.offline(PTP, plc=plc) as m:
-        events, job = m.events(duration=2.0), m.x.move_absolute(2000.0)
+        told: list[Event] = []
+        events, job = m.events(), m.x.move_absolute(2000.0)
         with pytest.raises(CncError):
             job.wait()
-        m.wait_until(lambda: m.x.state.set_velocity == 0.0, timeout=5.0)
+        with pytest.raises(CncError, match="the machine has ended: its run has ended; its units stand"):
+            told.extend(iter(events))
+        assert m.x.state.set_velocity == 0.0
         assert 500.0 < m.x.state.set_position < 1500.0
-        assert 22161 in [event.error_id for event in events]
+        assert 22161 in [event.error_id for event in told]
