@@ -296,6 +296,14 @@ class Axis:
         if not self.ptp.withholds(self.path_direction):
             self.path_direction = 0.0
 
+    def _release_bits(self) -> int:
+        bits = StatusBit.FEED_WITHHELD if self.feed_withheld else 0
+        if self.ptp.withholds(1.0):
+            bits |= StatusBit.FORWARD_NOT_RELEASED
+        if self.ptp.withholds(-1.0):
+            bits |= StatusBit.BACKWARD_NOT_RELEASED
+        return bits
+
     @property
     def feed_withheld(self) -> bool:
         """A motion, or the path of the channel that moves the axis, waits for the feed release of its direction."""
@@ -496,8 +504,8 @@ class Axis:
             bits |= StatusBit.PROTECTED
         if self.has_been_stopped:
             bits |= StatusBit.HAS_BEEN_STOPPED
-        if self.ptp.restricted and self.feed_withheld:
-            bits |= StatusBit.FEED_WITHHELD
+        if self.ptp.restricted:
+            bits |= self._release_bits()
         if not self.checks.referenced:
             bits |= StatusBit.NOT_REFERENCED
         if self.checks.coordinate_shift:

@@ -115,7 +115,7 @@ class PlcBridgeNode(UnitNode):
             for name in PLC_TOPICS.get(kind, {}):
                 self._listen(unit, name)
         self._hli_topics = HliTopics(self, self._hli)
-        self._emergency_stop = EmergencyStopTopics(self, self.plc)
+        self._emergency_stop = EmergencyStopTopics(self, self.plc, self._warn)
         process.timer(self, JOG_PATIENCE / 4.0, self._watch_jogs)
         self.create_subscription(msg.LifeSign, LIFE_SIGN, self._on_life_sign, PLC_INPUT)
         if isfinite(self._life_sign_timeout):

@@ -37,6 +37,8 @@ class StatusBit(IntEnum):
     FEED_WITHHELD = 1 << 17
     NOT_REFERENCED = 1 << 18
     COORDINATES_SHIFTED = 1 << 19
+    FORWARD_NOT_RELEASED = 1 << 20
+    BACKWARD_NOT_RELEASED = 1 << 21
     ERROR = 1 << 31
 
 

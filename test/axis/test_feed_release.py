@@ -55,6 +55,26 @@ def test_the_withheld_direction_is_like_override_0(sign: float, at: int) -> None
     assert_axis_smooth(by_release, acceleration=A, jerk=J)
 
 
+def test_each_direction_has_its_bit_at_a_standstill_and_in_motion() -> None:
+    """2^20 forward, 2^21 backward (AxisState.msg), whether something waits or not."""
+    bench = moving_axis(target=2000.0, velocity=1500.0, cycles=50)
+    directions, waits = 3 << 20, 1 << 17
+    for forward, backward, bits in (
+        (True, False, 2 << 20),
+        (False, True, 1 << 20 | waits),
+        (False, False, 3 << 20 | waits),
+    ):
+        release(bench, forward, backward)
+        bench.run(10)
+        assert bench.last.status_bits[-1] & (directions | waits) == bits
+    bench.accepted("stop")
+    bench.run(2000)
+    assert bench.state == S.STANDSTILL and bench.last.status_bits[-1] & (directions | waits) == directions
+    release(bench)
+    bench.run(1)
+    assert bench.last.status_bits[-1] & directions == 0
+
+
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_the_other_direction_is_free(sign: float) -> None:
     """Nothing changes for a motion the other way, nor for one in its brake phase."""

@@ -275,6 +275,20 @@ def test_the_emergency_stop(plc):
     assert plc.ask(Trigger, "/emergency_stop/reset").success
     for unit in ("x", "y", "s"):
         plc.shows(unit, "state", AxisStateCode.STANDSTILL)
+    other = plc.create_publisher(Bool, "/emergency_stop", PLC_INPUT)  # a second button
+    plc.spin_until(lambda: plc.count_publishers("/emergency_stop") == 2, "the second button")
+    plc.write("/emergency_stop", Bool, data=True)
+    plc.shows("x", "state", AxisStateCode.ERROR_STOP)
+    other.publish(Bool(data=False))
+    text = (
+        "plc: /emergency_stop has 2 publishers, and one says false; the emergency stop holds"
+        " until /emergency_stop/release is called"
+    )
+    plc.spin_until(lambda: (26229, text) in [(event.error_id, event.text) for event in plc.events], "the warning")
+    assert shown[-1] and plc.ask(Trigger, "/emergency_stop/release").success
+    plc.spin_until(lambda: not shown[-1], "the lamp off again")
+    plc.destroy_publisher(other)
+    assert plc.ask(Trigger, "/emergency_stop/reset").success
     assert plc.ask(Trigger, "/emergency_stop/press").success and plc.ask(Trigger, "/emergency_stop/release").success
     assert plc.ask(Trigger, "/emergency_stop/reset").success
     plc.sees("channel", lambda status: status.error_id == 0, "the channel")

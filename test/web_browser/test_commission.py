@@ -130,3 +130,14 @@ def test_a_viewer_takes_no_snapshot(look, fake):
     page = look("scope")
     page.wait_for_selector("text=Export CSV")
     assert page.locator("text=MCAP snapshot").count() == 0
+
+
+def test_the_online_page_shows_each_feed_enable(look, server, fake):
+    """TX1250 4.3: Controller, Feed Fw, Feed Bw, from the bits of the state."""
+    page = open_tab(look, "Online")
+    fake.state["x"]["status_bits"] = 1 << 20 | 1 << 17
+    for word, on in (("Controller", True), ("Feed forward", False), ("Feed backward", True), ("Waits for feed", True)):
+        page.wait_for_selector(f"li:has-text('{word}: {'on' if on else 'off'}')")
+    fake.state["x"]["status_bits"] = 0
+    page.wait_for_selector("li:has-text('Feed forward: on')")
+    page.wait_for_selector("li:has-text('Waits for feed: off')")

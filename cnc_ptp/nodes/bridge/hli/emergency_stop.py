@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -14,6 +15,7 @@ from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.protocol.blocks import Command, CommandRecord
 from cnc_ptp.protocol.unit import PLC
 
+SEVERAL_BUTTONS = 26229
 COMMANDS: dict[str, tuple[str, dict[str, bool]]] = {
     "press": ("emergency_stop", {"enabled": True}),
     "release": ("emergency_stop", {"enabled": False}),
@@ -25,13 +27,16 @@ COMMANDS: dict[str, tuple[str, dict[str, bool]]] = {
 class EmergencyStopTopics:
     """A button on a topic, buttons as services, and whether the emergency stop holds.
 
-    `true` presses it, as often as it comes; `false` behind a `true` releases it. A release moves nothing: each unit
-    that was stopped wants a reset.
+    `true` presses it, as often as it comes; `false` behind a `true` releases it, unless there are several buttons:
+    nobody knows whose `true` it was. A release moves nothing: each unit that was stopped wants a reset.
     """
 
-    def __init__(self, node: UnitNode, plc: PlcUnit) -> None:
+    def __init__(self, node: UnitNode, plc: PlcUnit, warn: Callable[[int, str], None]) -> None:
+        """`warn(number, text)`: publishes what happens to the messages."""
         self._plc = plc
         self._node = node
+        self._warn = warn
+        self._told = False
         self._button = False
         self._shown: bool | None = None
         self._publisher = node.create_publisher(Bool, f"{EMERGENCY_STOP_TOPIC}/active", LATEST)
@@ -45,11 +50,24 @@ class EmergencyStopTopics:
         if self._button and not self._plc.emergency:
             self._give("press")
         elif before and not self._button and self._plc.emergency:
+            self._release()
+
+    def _release(self) -> None:
+        count = self._node.count_publishers(EMERGENCY_STOP_TOPIC)
+        if count <= 1:
             self._give("release")
+        elif not self._told:
+            self._told = True
+            self._warn(
+                SEVERAL_BUTTONS,
+                f"plc: {EMERGENCY_STOP_TOPIC} has {count} publishers, and one says false; "
+                f"the emergency stop holds until {EMERGENCY_STOP_TOPIC}/release is called",
+            )
 
     def _give(self, name: str) -> CommandRecord:
         command, arguments = COMMANDS[name]
         record = self._node.command(Command(PLC, command, dict(arguments)))
+        self._told = False
         self.show()
         return record
 

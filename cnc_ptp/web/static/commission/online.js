@@ -8,7 +8,7 @@ const moves = (sign) => (state) => (state.set_velocity || 0) * sign > 1e-9;
 const BITS = {
   "Status, logical": [["Ready", (state) => !["Disabled", "ErrorStop", undefined].includes(state.state)], ["Referenced", (state) => !bit(18)(state)], ["Has job", bit(8)], ["Protected", bit(5)], ["Stopped", bit(7)], ["Coordinates shifted", bit(19)], ["Error", bit(31), true], ["Error delayed", bit(6), true]],
   "Status, physical": [["Not moving", (state) => Math.abs(state.set_velocity || 0) < 1e-9], ["Moving forward", moves(1)], ["Moving backward", moves(-1)], ["Constant velocity", bit(12)], ["In target position", bit(4)], ["Coupled", (state) => Boolean(state.master)], ["Compensating", bit(13)], ["External setpoints", bit(14)], ["Friction compensation", bit(16)]],
-  Enabling: [["Controller", (state) => state.state !== "Disabled"], ["Feed released", (state) => !bit(17)(state)], ["Feed withheld", bit(17), true]],
+  Enabling: [["Controller", (state) => state.state !== "Disabled"], ["Feed forward", (state) => !bit(20)(state)], ["Feed backward", (state) => !bit(21)(state)], ["Waits for feed", bit(17), true]],
 };
 
 export function onlineAxis(app, unit) {
