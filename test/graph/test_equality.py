@@ -190,6 +190,7 @@ MEASURING_SCENARIO = (
 )
 
 
+@pytest.mark.long
 @graphs
 def test_measuring_in_the_graph_equals_the_offline_run(folder, options):
     """Signals of simulated probes and of the PLC: the same instants, positions and stops."""

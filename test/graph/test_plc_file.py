@@ -158,7 +158,7 @@ class Plc:
 """
 
 
-@pytest.mark.parametrize(("seconds", "others"), [(0.35, 0), (4.0, 26101)])
+@pytest.mark.parametrize(("seconds", "others"), [(0.35, 0), pytest.param(4.0, 26101, marks=pytest.mark.long)])
 def test_a_plc_that_catches_the_end_of_its_cycle_is_a_fault(tmp_path, seconds, others):
     """After 2 s without a block the axes have stopped on their own; the run ends nevertheless."""
     file, recording = tmp_path / "plc.py", tmp_path / "run.mcap"

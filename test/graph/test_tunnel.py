@@ -64,6 +64,7 @@ def inside(namespace):
     return ("ip", "netns", "exec", namespace)
 
 
+@pytest.mark.long
 def test_two_ends_and_a_stranger(tunnel, tmp_path):
     a, b = tunnel
     recording = tmp_path / "run.mcap"
