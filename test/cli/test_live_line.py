@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 from rich.console import Console
 
-from cnc_ptp.commands.run.progress import LiveLine, clock_text, line_text
+from cnc_ptp.commands.run.live_line import LiveLine, clock_text, line_text
 from cnc_ptp.protocol.axis_states import AxisStateCode
 from cnc_ptp.protocol.blocks import ChannelBlock
 from cnc_ptp.protocol.unit_view import UnitView, view_of
