@@ -1,5 +1,6 @@
 """Helper modules (test/support), the packages `bench` and `figures`; property tests are seeded and never fail on time."""
 
+import gc
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,7 +10,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 HERE = Path(__file__).parent
-IN_REAL_TIME = ("graph", "web", "web_browser")
+IN_REAL_TIME = ("graph", "web", "web_browser", "sweep")
 """Folders whose tests wait for processes and pages: one that fails has a second attempt, which the summary lists (RERUN)."""
 MOTION = pytest.StashKey[list[str]]()
 """What was checked of the motion of recordings, a line for each process."""
@@ -69,6 +70,13 @@ def motion_of_recordings(recorded_motion: Any, request: pytest.FixtureRequest) -
     if request.node.get_closest_marker("motion_unchecked") is None:
         found = recorded_motion.violations(files)
         assert not found, "\n".join(found)
+
+
+def pytest_collection_finish() -> None:
+    """Twenty thousand collected tests stay to the end: nobody need look through them for garbage again and again."""
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(20_000, 20, 20)
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:

@@ -21,6 +21,7 @@ HARMLESS = ("/dev/null", "/dev/tty")
 
 _folder: list[str] = []
 """Of the input that is tried now."""
+BYTECODE = "__pycache__"
 _outside: list[str] = []
 _hooked: list[bool] = []
 
@@ -67,6 +68,8 @@ def _require_inside(event: str, path: Any, folder: int = -1) -> None:
         found = os.path.realpath(name)  # where links lead; other events concern the link itself
     else:
         found = os.path.join(os.path.realpath(os.path.dirname(name)), os.path.basename(name))
+    if BYTECODE in found.split(os.sep)[-2:]:
+        return  # what Python keeps of a module that is imported now
     if not f"{found}{os.sep}".startswith(_folder[-1]) and name not in HARMLESS:
         _refuse(f"{event} {name}")
 

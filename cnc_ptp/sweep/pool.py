@@ -145,13 +145,18 @@ class Pool:
         return isinstance(future.exception(), self._distributed.KilledWorker)
 
     def _row(self, future: Any) -> Row:
-        """Raises CncError 26186 where a worker cannot compute at all: rows have what is wrong with a variant."""
+        """Raises CncError 26186 where a worker cannot compute (what is wrong with a variant is in its row), 26181 when
+        the scheduler is gone.
+        """
         if future.status == "error":
             error = future.exception()
             if isinstance(error, CncError):
                 raise CncError(UNFIT_WORKERS, error.reason, KEPT)
             raise CncError(UNFIT_WORKERS, f"a worker cannot compute: {type(error).__name__}: {error}", KEPT)
-        row: Row = future.result()
+        try:
+            row: Row = future.result()
+        except (CancelledError, OSError):
+            raise CncError(NO_SCHEDULER, "the scheduler is gone", KEPT) from None
         return row
 
     def close(self) -> None:

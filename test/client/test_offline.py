@@ -448,8 +448,10 @@ def test_motions_in_an_event_loop_are_those_of_one_after_the_other() -> None:
         assert m.cycle == together
 
 
-def test_a_signal_acts_between_two_blocks(m: Machine) -> None:
+def test_a_signal_acts_between_two_blocks(m: Machine, request: pytest.FixtureRequest) -> None:
     """Ctrl-C in a long wait; the machine is whole, and can go on."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # other tests of this process may leave theirs
+    request.addfinalizer(lambda: signal.signal(signal.SIGINT, before))
     job = m.x.move_absolute(300, velocity=0.05)
     threading.Timer(0.3, signal.raise_signal, [signal.SIGINT]).start()
     with pytest.raises(KeyboardInterrupt):

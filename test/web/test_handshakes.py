@@ -69,6 +69,7 @@ def test_a_function_appears_and_its_acknowledgement_releases_the_program(machine
                 "type": "handshake", "cycle": request["cycle"], "id": request["id"], "channel": "channel", "kind": kind,
                 "spindle": spindle, "number": number, "value": value, "line": request["line"],
                 "acknowledge_needed": True, "position": 0.0, "direction": "",
+                "synchronisation": request["synchronisation"],
             }  # fmt: skip
             assert await other.wait_for("handshake") == request
             answer = await page.command("plc", "acknowledge", id=request["id"])
