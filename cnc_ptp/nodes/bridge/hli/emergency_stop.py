@@ -60,8 +60,8 @@ class EmergencyStopTopics:
             self._told = True
             self._warn(
                 SEVERAL_BUTTONS,
-                f"plc: {EMERGENCY_STOP_TOPIC} has {count} publishers, and one says false; "
-                f"the emergency stop holds until {EMERGENCY_STOP_TOPIC}/release is called",
+                f"plc: /{EMERGENCY_STOP_TOPIC} has {count} publishers, and one says false; "
+                f"the emergency stop holds until /{EMERGENCY_STOP_TOPIC}/release is called",
             )
 
     def _give(self, name: str) -> CommandRecord:
