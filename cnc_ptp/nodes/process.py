@@ -44,8 +44,8 @@ SPIN_TIMEOUT = 0.1
 START_PATIENCE = 2.0
 """Seconds that a node may take for its first block, if the watchdog time is shorter: processes are still busy with each
 other's start, and nothing has moved yet."""
-LATE_PERIODS = 2.0
-"""After these a timer is late: the executor does not call it."""
+LATE_PERIODS = 1.25
+"""After these a timer is late: the executor does not call it. After two, a watchdog thinks the computer was suspended."""
 READY_PERIOD = 0.05
 """Seconds between two checks of a node that waits for all others."""
 PATIENCE = 3.0
@@ -143,9 +143,17 @@ class SteadyTimer:
         self._called = time.monotonic()
         self._call()
 
+    def left(self) -> float:
+        """Seconds until it is late."""
+        return self._called + LATE_PERIODS * self._period - time.monotonic()
+
     def call_if_late(self) -> None:
-        if time.monotonic() - self._called > LATE_PERIODS * self._period and not self._timer.is_canceled():
+        if self.left() < 0.0 and not self.cancelled:
             self._on_time()
+
+    @property
+    def cancelled(self) -> bool:
+        return self._timer.is_canceled()
 
     def cancel(self) -> None:
         self._timer.cancel()
@@ -195,11 +203,12 @@ def spin(
     try:
         take_nodes(executor, nodes)
         while not done():
-            executor.spin_once(timeout_sec=wait())
+            timers = [each for node in nodes for each in _timers.get(node, ()) if not each.cancelled]
+            executor.spin_once(timeout_sec=max(0.0, min([wait(), *(each.left() for each in timers)])))
             after()
+            for each in timers:
+                each.call_if_late()
             for node in nodes:
-                for late in _timers.get(node, ()):
-                    late.call_if_late()
                 if failure := getattr(node, "failure", None):
                     raise failure
     finally:
