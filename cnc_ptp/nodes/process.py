@@ -45,7 +45,7 @@ START_PATIENCE = 2.0
 """Seconds that a node may take for its first block, if the watchdog time is shorter: processes are still busy with each
 other's start, and nothing has moved yet."""
 LATE_PERIODS = 1.25
-"""After these a timer is late: the executor does not call it. After two, a watchdog believes in a suspended computer."""
+"""A timer is late after these. After two, a watchdog takes the computer for suspended."""
 READY_PERIOD = 0.05
 """Seconds between two checks of a node that waits for all others."""
 PATIENCE = 3.0
