@@ -31,6 +31,7 @@ class Graph:
         self.domain = domain
         environment = os.environ | {"ROS_DOMAIN_ID": str(domain)}
         command = [sys.executable, "-m", "cnc_ptp", "run", *words, "--record", str(recording)]
+        recording.unlink(missing_ok=True)  # of an earlier run with the same folder: its file is the sign of the start
         with self._log.open("w") as log:
             self.process = subprocess.Popen(command, stdout=log, stderr=log, stdin=subprocess.DEVNULL, env=environment)
         self.processes: dict[str, psutil.Process] = {}

@@ -205,6 +205,8 @@ def not_retracted(recorded: Recorded) -> Iterator[str]:
 def check_links(row: Row, case: Case, recorded: Recorded) -> None:
     machine = read_machine(str(case.machine))
     for link in case.links:
+        if not {f"/{link.master}/state", f"/{link.slave}/state"} <= {*recorded.states}:
+            continue  # one of them has died before its first block: nothing has moved
         name = f"{link.master}-{link.slave}"
         apart, permitted = motion.torn(recorded, link, machine)
         row.torn[name] = [round(apart, 3), round(permitted, 3)]

@@ -8,6 +8,7 @@ import pytest
 from campaign import kills, load, motion
 from campaign.cases import Link
 from campaign.kills import HOLD, KILL, TERM, Fault, Row
+from campaign.load import case_of
 from campaign.table import summary, table
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import Event, Severity
@@ -122,3 +123,11 @@ def test_growth_is_counted_from_the_settled_part_on():
     assert row.problems == [] and row.figures == {"x: MB more": pytest.approx(0.6)}
     load.grown(row, [{"x": (60.0, 10, 3)}, {"x": (62.0, 11, 4)}])
     assert row.problems == ["x has grown by 2.00 MB", "x has 1 more file handles, 1 more threads"]
+
+
+def test_a_unit_that_has_died_before_its_first_block_is_torn_from_nobody():
+    """Seed 38, number 31 of `python -m campaign`."""
+    row, made = Row(Fault("coupled", "x", KILL, 0.0, 0.1)), recorded(rows(ramp()))
+    del made.states["/x/state"]
+    kills.check_links(row, case_of("coupled"), made)
+    assert (row.torn, row.problems) == ({}, [])
