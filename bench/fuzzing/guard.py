@@ -21,7 +21,6 @@ HARMLESS = ("/dev/null", "/dev/tty")
 
 _folder: list[str] = []
 """Of the input that is tried now."""
-BYTECODE = "__pycache__"
 _outside: list[str] = []
 _hooked: list[bool] = []
 
@@ -35,10 +34,11 @@ def guarded(folder: Path) -> Iterator[list[str]]:
     _outside.clear()
     _folder.append(f"{folder.resolve()}{os.sep}")
     temporary, tempfile.tempdir = tempfile.tempdir, str(folder.resolve())
+    bytecode, sys.dont_write_bytecode = sys.dont_write_bytecode, True  # of modules that an input imports
     try:
         yield _outside
     finally:
-        tempfile.tempdir = temporary
+        tempfile.tempdir, sys.dont_write_bytecode = temporary, bytecode
         _folder.pop()
 
 
@@ -68,8 +68,6 @@ def _require_inside(event: str, path: Any, folder: int = -1) -> None:
         found = os.path.realpath(name)  # where links lead; other events concern the link itself
     else:
         found = os.path.join(os.path.realpath(os.path.dirname(name)), os.path.basename(name))
-    if BYTECODE in found.split(os.sep)[-2:]:
-        return  # what Python keeps of a module that is imported now
     if not f"{found}{os.sep}".startswith(_folder[-1]) and name not in HARMLESS:
         _refuse(f"{event} {name}")
 

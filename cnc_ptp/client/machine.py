@@ -72,9 +72,8 @@ class Machine:
         """
         from cnc_ptp.client.offline_link import OfflineLink
 
-        files = {"record": record, "scenario": scenario, "plc": plc}
-        given = {name: None if path is None else fspath(path) for name, path in files.items()}
-        return cls(OfflineLink(fspath(machine), recorder=recorder, **given))
+        files = given_files(record=record, scenario=scenario, plc=plc)
+        return cls(OfflineLink(fspath(machine), recorder=recorder, **files))
 
     @classmethod
     def start(
@@ -100,8 +99,7 @@ class Machine:
         from cnc_ptp.client.graph_link import start_graph
 
         check_seconds("start", "timeout", timeout, "nothing was started", finite=True)
-        given = {"record": record, "scenario": scenario, "plc": plc}
-        files = {name: fspath(path) for name, path in given.items() if path is not None}
+        files = given_files(record=record, scenario=scenario, plc=plc)
         options: dict[str, Any] = {"machine": fspath(machine), "composed": composed, **files}
         if record is not None or recorder is not None:
             options["recorder"] = asdict(
@@ -286,3 +284,8 @@ class Units(dict[str, OneKind]):
 
     def __missing__(self, name: str) -> OneKind:
         raise unknown_unit(name, self, self._what)
+
+
+def given_files(**files: Path | None) -> dict[str, str]:
+    """Those that are given, as texts."""
+    return {name: fspath(path) for name, path in files.items() if path is not None}
