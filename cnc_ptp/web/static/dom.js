@@ -25,6 +25,17 @@ export function say(element, text) {
   if (element.textContent !== shown) element.textContent = shown;
 }
 
+/** `draw`, called once before the next frame however often it is asked for: a flood of messages draws a list once. */
+export function oncePerFrame(draw) {
+  let asked = 0;
+  return () => {
+    asked ||= requestAnimationFrame(() => {
+      asked = 0;
+      draw();
+    });
+  };
+}
+
 let last = 0;
 export const newId = (stem = "f") => `${stem}${++last}`;
 

@@ -1,5 +1,5 @@
 // Alarms with number, cause and remedy.
-import { button, h, panel } from "../dom.js";
+import { button, h, oncePerFrame, panel } from "../dom.js";
 import { fixed } from "../format.js";
 
 const SHOWN = 200; // of so many alarms
@@ -18,7 +18,7 @@ export function alarmList(app, { most = SHOWN, history = false, title = "Alarms"
     const more = `${wanted.length - shown.length} older`;
     if (wanted.length > shown.length) list.append(most < SHOWN ? h("a", { href: "#alarms" }, more) : h("p", { class: "muted" }, more));
   }
-  const end = store.on("alarms", show);
+  const end = store.on("alarms", oncePerFrame(show));
   show();
   return { element, end };
 }
