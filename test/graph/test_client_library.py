@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 
 import psutil
@@ -17,6 +18,8 @@ from graph_support import ROOT, one_axis_machine, small_machine, verified, wait_
 from cnc_ptp.client import CncError, JobStatus, Machine, MC_ReadParameter
 from cnc_ptp.client.graph_link import GraphLink
 from cnc_ptp.client.session import Session
+from cnc_ptp.nodes.client import client_thread
+from cnc_ptp.nodes.client.machine_client import MachineClient
 from cnc_ptp.recording.reader import read_recording
 
 KILLED = """
@@ -356,6 +359,20 @@ def test_a_graph_that_does_not_react_is_killed(ros_domain, folder, monkeypatch):
         processes = family(m)
         os.kill(processes[0], signal.SIGSTOP)
     assert wait_until_gone(processes) == []
+
+
+def test_a_participant_that_does_not_end_is_left_alone(ros_domain, monkeypatch):
+    """A close that waits for a lock of DDS would wait for ever."""
+    released, end = threading.Event(), MachineClient.end
+    monkeypatch.setattr(MachineClient, "end", lambda client: released.wait(30.0) and end(client))
+    monkeypatch.setattr(client_thread, "END_TIME", 0.2)
+    thread = client_thread.ClientThread(domain=None, namespace="", after=lambda client: None)
+    text = r"^the DDS participant of the client has not ended within 0\.2 s; it is left alone$"
+    with pytest.warns(ResourceWarning, match=text):
+        thread.close()
+    released.set()
+    thread._thread.join(30.0)
+    assert not thread._thread.is_alive()
 
 
 def test_the_user_may_have_ros_of_his_own(m):

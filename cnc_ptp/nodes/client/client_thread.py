@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import warnings
 from collections import deque
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
@@ -18,6 +19,10 @@ from cnc_ptp.nodes.client.machine_client import MachineClient
 Result = TypeVar("Result")
 PERIOD = 0.005
 """Seconds between two looks for what has come: a process that each block wakes would cost more."""
+
+END_TIME = 5.0
+"""Seconds that DDS may take to end: in its version here an end and an announcement can wait for each other for ever
+(eProsima/Fast-DDS issue 6502)."""
 
 
 class ClientThread:
@@ -54,9 +59,12 @@ class ClientThread:
         return future
 
     def close(self) -> None:
-        """The end of the thread and of its client."""
+        """The end of the thread and of its client; a ResourceWarning if DDS has not ended after END_TIME."""
         self._ends = True
-        self._thread.join()
+        self._thread.join(END_TIME)
+        if self._thread.is_alive():
+            text = f"the DDS participant of the client has not ended within {END_TIME:g} s; it is left alone"
+            warnings.warn(text, ResourceWarning, stacklevel=2)
 
     def _run(self, started: Future[MachineClient], words: Sequence[str], domain: int | None) -> None:
         try:
