@@ -208,7 +208,10 @@ def check_links(row: Row, case: Case, recorded: Recorded) -> None:
         if not {f"/{link.master}/state", f"/{link.slave}/state"} <= {*recorded.states}:
             continue  # one of them has died before its first block: nothing has moved
         name = f"{link.master}-{link.slave}"
-        apart, permitted = motion.torn(recorded, link, machine)
+        above = next((other for other in case.links if other.slave == link.master), None)
+        if above is not None and f"/{above.master}/state" not in recorded.states:
+            above = None
+        apart, permitted = motion.torn(recorded, link, machine, above=above)
         row.torn[name] = [round(apart, 3), round(permitted, 3)]
         if apart > permitted:
             row.problems.append(f"{name}: {apart:.3f} apart, {permitted:.3f} permitted")

@@ -107,11 +107,14 @@ def limits(machine: MachineParameters, unit: str) -> tuple[float, float]:
     return max(gear.max_speed for gear in gears), max([*accelerations, *curves])
 
 
-def torn(recorded: Recorded, link: Link, machine: MachineParameters) -> tuple[float, float]:
+def torn(
+    recorded: Recorded, link: Link, machine: MachineParameters, *, above: Link | None = None
+) -> tuple[float, float]:
     """How far actual positions of a master and its slave have left their relation, and how far they may, mm (deg).
 
     Somebody that is lost is noticed with the next block or the one after it: until then the others go on. Then each
-    brakes on its own ramp (P-AXIS-00002): with a factor other than 1 their distances differ.
+    brakes on its own ramp (P-AXIS-00002): with a factor other than 1 their distances differ. A master that is a slave
+    itself, by the link `above`, may also come to rest on the ramp of its own master.
     """
     found = tracks(recorded)
     master, slave = found[link.master], found[link.slave]
@@ -122,9 +125,11 @@ def torn(recorded: Recorded, link: Link, machine: MachineParameters) -> tuple[fl
     before = min(len(master.cycles), len(slave.cycles))
     lag = np.abs(apart[:before]).max(initial=0.0) if before else 0.0
     reaction = 2 * machine.block_cycles * machine.cycle_time_us * 1e-6
-    ramps = abs(
-        abs(link.factor) * longest_ramp(master, link.master, machine) - longest_ramp(slave, link.slave, machine)
-    )
+    leading = [longest_ramp(master, link.master, machine)]
+    if above is not None:
+        leading.append(abs(above.factor) * longest_ramp(found[above.master], above.master, machine))
+    following = longest_ramp(slave, link.slave, machine)
+    ramps = max(abs(abs(link.factor) * ramp - following) for ramp in leading)
     return float(np.abs(apart).max()), float(lag + fastest * reaction + ramps)
 
 

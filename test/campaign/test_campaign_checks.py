@@ -92,6 +92,14 @@ def test_a_pair_that_comes_apart_is_measured():
     assert distance > permitted == pytest.approx(2.0)
 
 
+def test_a_master_may_come_to_rest_on_the_ramp_of_its_own_master():
+    """Seed 38, number 2: y does so. A ramp from 400 mm/s takes 36 mm, one from 100 mm/s 6 mm: v²/2d + vd/2j."""
+    made, link = recorded(rows(ramp(400.0)), rows(ramp(100.0))), Link("y", "x", 0.5)
+    _, alone = motion.torn(made, link, MACHINE)
+    _, led = motion.torn(made, link, MACHINE, above=Link("x", "y", 4.0))
+    assert led - alone == pytest.approx(abs(0.5 * 4.0 * 36.0 - 36.0) - abs(0.5 * 6.0 - 36.0))
+
+
 def test_a_retract_that_did_not_take_place_is_found():
     made = recorded(rows(ramp()))
     text = (
