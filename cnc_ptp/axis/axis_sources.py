@@ -49,12 +49,17 @@ class PathSource:
         self._first_cycle = 0
         self._to_go = [0.0]
         """Distance to the end of the element: at the end of the last block, then in each cycle of this one."""
+        self._stops_with_path = ""
+        """Why the axis is to stop with its path, empty if it is not."""
 
     def setpoints(self, first_cycle: int, inputs: Mapping[str, CycleBlock]) -> Setpoints | None:
         """The setpoints of the channel that moves the axis, none if no channel does; switches the setpoint source."""
         channel = self._block = self._owning_channel(inputs)
         if channel is None:
             self._leave(first_cycle)
+            return None
+        if self._stops_with_path and self._axis.on_path and not channel.error_id[0]:
+            self._axis.fault(first_cycle, UPSTREAM_LOST, self._stops_with_path)
             return None
         count = channel.count
         start = channel.axes.index(self._axis.name) * count
@@ -80,6 +85,17 @@ class PathSource:
         if block is None or alone or not axis.on_path or block.first_cycle + block.count != cycle:
             return None
         return path_stop(block, self._axes, self._spindles)
+
+    def stop_with_path(self, reason: str) -> bool:
+        """For what its channel notices as well: the axis stays on the path until that stands; False if it has none.
+
+        When a block of the channel comes that is not one of its error reaction, the axis stops on its own ramp.
+        """
+        axis = self._axis
+        if not axis.on_path or axis.superposed or axis.coupled or axis.carried is not None:
+            return False
+        self._stops_with_path = reason
+        return True
 
     def watch(self, cycle: int, velocity: float) -> None:
         """A path no longer waits in a direction when it reverses, or when another element starts."""
@@ -134,11 +150,14 @@ class PathSource:
     def _leave(self, cycle: int) -> None:
         """The path has ended; external setpoints superimposed on it continue alone, or come to rest."""
         axis = self._axis
+        reason, self._stops_with_path = self._stops_with_path, ""
         if not axis.on_path:
             return
         axis.take(T.LEAVE_PATH)
         if axis.ptp.state(cycle)[1] != 0.0:
             axis.fault(cycle, PATH_NOT_ACCEPTED, "the channel released the axis while it moved")
+        elif reason:
+            axis.fault(cycle, UPSTREAM_LOST, reason)
         else:
             axis.advance_state(cycle)
 

@@ -44,7 +44,7 @@ from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import StatusBit
 from cnc_ptp.protocol.blocks import AxisBlock, Command, CycleBlock, CycleTick, Severity
 from cnc_ptp.protocol.jobs import SUPERIMPOSED, JobStatus
-from cnc_ptp.protocol.unit import UPSTREAM_LOST, Handler, Unit
+from cnc_ptp.protocol.unit import CLOCK, PLC, UPSTREAM_LOST, Handler, Unit
 
 ADDITIONS = ("external_enable", "external_disable")
 """Commands whose motion may be added to another one."""
@@ -207,9 +207,14 @@ class AxisUnit(Unit):
         if axis.state in (S.ERROR_STOP, S.DISABLED):
             return None
         leads = axis.on_path or (axis.coupling is not None and axis.coupling.master == source)
-        if source in ("plc", "clock") or leads:
-            reason = f"no block of '{source}' came within the watchdog time"
-            axis.fault(cycle, UPSTREAM_LOST, reason, path_stop=self._path.stop(cycle))
+        if source not in (PLC, CLOCK) and not leads:
+            return None
+        reason, in_step = f"no block of '{source}' came within the watchdog time", self._path.stop(cycle)
+        if source == PLC and in_step is None and self._path.stop_with_path(reason):
+            text = f"axis {self.name}: {reason}; the axis stops with its path"
+            self.event(cycle, Severity.ERROR, UPSTREAM_LOST, text)
+        else:
+            axis.fault(cycle, UPSTREAM_LOST, reason, path_stop=in_step)
         return None
 
     def remaining_distance(self, cycle: int) -> float:

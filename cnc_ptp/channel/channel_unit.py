@@ -51,7 +51,7 @@ from cnc_ptp.protocol.blocks import ChannelBlock, Command, CycleBlock, CycleTick
 from cnc_ptp.protocol.channel_states import ChannelStateCode
 from cnc_ptp.protocol.commands import BAD_ARGUMENT
 from cnc_ptp.protocol.notes import START_STEP
-from cnc_ptp.protocol.unit import EMERGENCY_STOP, UPSTREAM_LOST, Unit
+from cnc_ptp.protocol.unit import CLOCK, EMERGENCY_STOP, UPSTREAM_LOST, Unit
 
 NO_PROGRAM = 22003
 NOT_NOW = 22004
@@ -344,7 +344,8 @@ class ChannelUnit(Unit):
         """Watchdog: PLC, clock, an axis or a spindle has not published in time; the path stops."""
         if source in self._axes.nodes:
             self._motion.axis_failed(self._axes.nodes.index(source))
-        self._fault(cycle, UPSTREAM_LOST, f"no block of '{source}' came within the watchdog time")
+        way = "its axes stop without it" if source == CLOCK else ""  # which keeps them in step
+        self._fault(cycle, UPSTREAM_LOST, f"no block of '{source}' came within the watchdog time", way=way)
 
     def waits_for(self) -> str:
         """What the program waits for that does not come with time alone; empty when it continues without help."""
@@ -698,12 +699,18 @@ class ChannelUnit(Unit):
         where = line_of_program(self._sequence.source, self._sequence.calls)
         self._fault(cycle, error.number, f"{error.message} in {where}", error.values)
 
-    def _fault(self, cycle: int, error_id: int, reason: str, values: Mapping[str, Value] = NO_VALUES) -> None:
-        """Error reaction: the path ramps down, the program is aborted, its spindles stop; state ERROR until reset."""
+    def _fault(
+        self, cycle: int, error_id: int, reason: str, values: Mapping[str, Value] = NO_VALUES, *, way: str = ""
+    ) -> None:
+        """Error reaction: the path ramps down, the program is aborted, its spindles stop; state ERROR until reset.
+
+        `way`: how the axes stop, if not along the path.
+        """
         if self._error_id:
             return
         idle = self._sequence.phase is Phase.IDLE
-        effect = f"{self._motion.stop_text or 'the path stops on its ramp'} and the program is aborted"
+        way = way or self._motion.stop_text or "the path stops on its ramp"
+        effect = f"{way} and the program is aborted"
         if idle:
             effect = "its spindles stop" if self._sequence.spindles_move else "nothing moves"
         line = 0 if idle else self._sequence.source.line

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections import deque
 
-from cnc_ptp.machine.runner import CLOCK
 from cnc_ptp.machine.wiring import Inputs
 from cnc_ptp.protocol.blocks import CycleBlock, CycleTick
+from cnc_ptp.protocol.unit import CLOCK
 
 
 class BlockGate:

@@ -20,9 +20,7 @@ from cnc_ptp.protocol.blocks import (
     Severity,
 )
 from cnc_ptp.protocol.channel_states import ChannelStateCode
-from cnc_ptp.protocol.unit import PLC, Unit
-
-CLOCK = "clock"
+from cnc_ptp.protocol.unit import CLOCK, PLC, Unit
 
 
 class UnitRunner:

@@ -13,7 +13,6 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from xml.etree import ElementTree
 
-from cnc_ptp.machine.runner import CLOCK
 from cnc_ptp.machine.wiring import unit_kinds, wiring
 from cnc_ptp.nodes.observed_topics import observed_topics
 from cnc_ptp.nodes.topics import (
@@ -48,7 +47,7 @@ from cnc_ptp.nodes.topics import (
     state_topic,
 )
 from cnc_ptp.parameters import MachineParameters, read_machine
-from cnc_ptp.protocol.unit import PLC
+from cnc_ptp.protocol.unit import CLOCK, PLC
 
 VERSION = "0.2.0"
 """Of the format of the policies."""

@@ -12,7 +12,6 @@ from rclpy.serialization import deserialize_message
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.runner import CLOCK
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import node_command_line, process
 from cnc_ptp.nodes.drive_watch import FAREWELL, DriveWatch
@@ -24,7 +23,7 @@ from cnc_ptp.nodes.watchdog import Watchdog
 from cnc_ptp.number_range import DURATION
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.protocol.blocks import PlcBlock
-from cnc_ptp.protocol.unit import PLC
+from cnc_ptp.protocol.unit import CLOCK, PLC
 from cnc_ptp.wire.block_codec import codec_of
 from cnc_ptp.wire.stamps import Stamps
 from cnc_ptp.wire.ticks import Tick, encode_tick

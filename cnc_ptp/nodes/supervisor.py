@@ -16,7 +16,6 @@ from rclpy.client import Client
 from cnc_ptp import srv
 from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import INTERRUPTED
-from cnc_ptp.machine.runner import CLOCK
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nc.block_search import StartPoint
 from cnc_ptp.nodes import convert, process
@@ -38,7 +37,7 @@ from cnc_ptp.nodes.unit.claim import require_free
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import Event, Severity
 from cnc_ptp.protocol.notes import Note
-from cnc_ptp.protocol.unit import PLC
+from cnc_ptp.protocol.unit import CLOCK, PLC
 from cnc_ptp.recording.closing import close_cut_recording
 from cnc_ptp.recording.recorder_options import FROM_THE_START, RecorderOptions
 from cnc_ptp.ros_arguments import ros_arguments

@@ -38,6 +38,8 @@ Handler = Callable[..., str | Answer | None]
 
 PLC = "plc"
 """Name of the PLC, as a unit and as the source of commands."""
+CLOCK = "clock"
+"""Name of what sends the ticks."""
 UPSTREAM_LOST = 26101
 """A unit that is needed has sent nothing within the watchdog time."""
 EMERGENCY_STOP = 26168

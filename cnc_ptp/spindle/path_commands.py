@@ -14,6 +14,7 @@ from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import state_name
 from cnc_ptp.protocol.blocks import ChannelBlock
 from cnc_ptp.protocol.spindle_states import SpindleMode
+from cnc_ptp.protocol.unit import CLOCK
 from cnc_ptp.spindle import transitions as T
 from cnc_ptp.spindle.faults import NOT_AT_STANDSTILL, ON_PATH, PATH_ENDED, SENSORLESS
 from cnc_ptp.spindle.path_stop import path_stop
@@ -85,7 +86,7 @@ class PathCommands:
         block = travel.block
         if block is not None and block.first_cycle + block.count == cycle:
             travel.stop = path_stop(block, self._axes, {spindle.name: spindle.parameters})
-        if travel.stop is None and source in (travel.channel, "clock"):
+        if travel.stop is None and source in (travel.channel, CLOCK):
             spindle.leave_path(cycle)
 
     def take_setpoints(self, cycle: int, block: object) -> None:

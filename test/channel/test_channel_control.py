@@ -547,10 +547,10 @@ def test_the_watchdog_of_the_channel(source: str) -> None:
     bench = running(LINE, 0.5)
     bench.give("channel", "upstream_lost", source=source)
     bench.run(0.5)
+    way = "its axes stop without it" if source == "clock" else "the path stops on its ramp"
     assert bench.errors() == [
-        f"P-ERR-26101 channel channel: no block of '{source}' came within the watchdog time; the path stops on "
-        f"its ramp "
-        "and the program is aborted"
+        f"P-ERR-26101 channel channel: no block of '{source}' came within the watchdog time; {way} and the program is "
+        "aborted"
     ]
     assert_all_smooth(bench)
     assert bench.last("channel").done
@@ -564,6 +564,50 @@ def test_the_watchdog_of_the_channel(source: str) -> None:
         )
     else:
         assert bench.give("channel", "start").accepted
+
+
+LOST = "no block of 'plc' came within the watchdog time"
+
+
+def test_without_a_plc_the_axes_stop_with_their_path() -> None:
+    bench = running("%P\nG01 X100 Y30 F6000\nM30", 0.5)
+    for unit in ("x", "y", "channel"):
+        bench.give(unit, "upstream_lost", source="plc")
+    bench.run(1.0)
+    x, y = (bench.column(axis, "set_position") for axis in "xy")
+    assert [0.3 * each for each in x] == pytest.approx(y, abs=1e-9)
+    assert x[-1] > x[500] + 1.0
+    errors = [text for text in bench.errors() if " axis x: " in text]
+    assert errors == [
+        f"P-ERR-26101 axis x: {LOST}; the axis stops with its path",
+        f"P-ERR-26101 axis x: {LOST}; the axis stops on its own ramp (ErrorStop)",
+    ]
+    assert bench.states("x")[-1] == S.ERROR_STOP
+    assert_all_smooth(bench)
+
+
+def test_an_axis_that_misses_the_plc_alone_stops_on_its_own_ramp() -> None:
+    bench = running("%P\nG01 X100 Y30 F6000\nM30", 0.5)
+    bench.give("x", "upstream_lost", source="plc")
+    bench.run(1.0)
+    assert bench.errors() == [
+        f"P-ERR-26101 axis x: {LOST}; the axis stops with its path",
+        f"P-ERR-26101 axis x: {LOST}; the axis stops on its own ramp (ErrorStop)",
+        "P-ERR-22012 channel channel: x is in error P-ERR-26101; the path stops on its ramp and the program is aborted",
+    ]
+    assert_all_smooth(bench)
+
+
+def test_an_axis_whose_channel_is_lost_as_well_stops_on_its_own_ramp() -> None:
+    bench = running("%P\nG01 X100 Y30 F6000\nM30", 0.5)
+    for source in ("plc", "channel"):
+        bench.give("x", "upstream_lost", source=source)
+    bench.run(1.0)
+    assert bench.errors()[:2] == [
+        f"P-ERR-26101 axis x: {LOST}; the axis stops with its path",
+        f"P-ERR-26101 axis x: {LOST.replace('plc', 'channel')}; the axis stops on its own ramp (ErrorStop)",
+    ]
+    assert_all_smooth(bench)
 
 
 def test_a_fault_of_an_idle_channel() -> None:

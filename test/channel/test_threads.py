@@ -280,6 +280,9 @@ def test_a_retract_axis_that_has_failed_does_not_retract():
     ]
 
 
+LOST_PLC = "no block of 'plc' came within the watchdog time"
+
+
 def test_a_spindle_that_no_longer_reports():
     """The retract goes on at the last speed that is known."""
     bench = MachineBench(HEAD + THREAD + "\nM30\n", machine=LATHE, end_when_idle=False).run(3.0)
@@ -306,6 +309,21 @@ def test_an_axis_that_no_longer_reports(lost, does):
     )
     assert texts(bench)[-1] == text
     assert bench.column("x", "set_position")[-1] == (36.0 if lost == "x" else 41.0)
+
+
+def test_without_a_plc_the_thread_retracts():
+    """Its axes stay on the path, which follows the spindle on its ramp."""
+    bench = MachineBench(HEAD + THREAD + "\nM30\n", machine=LATHE, end_when_idle=False).run(3.0)
+    for unit in ("x", "z", "s", "channel"):
+        bench.give(unit, "upstream_lost", source="plc")
+    bench.run(2.0)
+    assert_within_limits(bench)
+    assert bench.column("x", "set_position")[-1] == 41.0
+    assert f"26101 channel channel: {LOST_PLC}; {RETRACTS} and the program is aborted" in texts(bench)
+    assert [text for text in texts(bench) if " axis x: " in text] == [
+        f"26101 axis x: {LOST_PLC}; the axis stops with its path",
+        f"26101 axis x: {LOST_PLC}; the axis stops on its own ramp (ErrorStop)",
+    ]
 
 
 def test_a_reset_while_the_thread_waits_moves_nothing():

@@ -18,7 +18,7 @@ from rclpy.subscription import Subscription
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.gate import BlockGate
-from cnc_ptp.machine.runner import CLOCK, UnitRunner
+from cnc_ptp.machine.runner import UnitRunner
 from cnc_ptp.machine.wiring import Inputs, unit_kinds, wiring
 from cnc_ptp.nodes import convert, process
 from cnc_ptp.nodes.events import EventPublisher
@@ -54,7 +54,7 @@ from cnc_ptp.parameters.view.authority import OF_SERVICES
 from cnc_ptp.protocol.authority import closed_to
 from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Event, PlcBlock, Severity
 from cnc_ptp.protocol.commands import BAD_ARGUMENT, COMMANDS
-from cnc_ptp.protocol.unit import PLC, Unit
+from cnc_ptp.protocol.unit import CLOCK, PLC, Unit
 from cnc_ptp.wire.block_codec import codec_of, encode_block, has_plain_header, head_of
 from cnc_ptp.wire.stamps import Stamps
 from cnc_ptp.wire.ticks import Tick, decode_tick
