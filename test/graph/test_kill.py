@@ -108,12 +108,15 @@ THREAD_BREAKS_OFF = {
     "z": f"channel channel: no block of 'z' came within the watchdog time; {RETRACTS}",
     "x": "channel channel: no block of 'x' came within the watchdog time; the path stops on its ramp in the thread and"
     " the program is aborted",
+    "plc": f"channel channel: no block of 'plc' came within the watchdog time; {RETRACTS}",
+    "clock": "channel channel: no block of 'clock' came within the watchdog time; its axes stop without it and the"
+    " program is aborted",
     "channel": "axis z: no block of 'channel' came within the watchdog time; the axis stops on its own ramp (ErrorStop)",
 }
 """By the node that is killed: what the event says of the axes."""
 
 
-@pytest.mark.parametrize("node", ["z", *long(["s", "x", "channel"])])
+@pytest.mark.parametrize("node", ["z", "plc", *long(["s", "x", "channel", "clock"])])
 def test_killed_node_while_it_cuts_a_thread(tmp_path, node):
     """The tool leaves the groove by X in step with the spindle, or the path stops in it, as the event says."""
     (tmp_path / "thread.nc").write_text("G18 G90 M03 S400\nG00 X36 Z300\nG33 Z20 K1.5\nM30\n")
@@ -136,7 +139,7 @@ def test_killed_node_while_it_cuts_a_thread(tmp_path, node):
     x, z, spindle = (recorded.states[f"/{name}/state"] for name in ("x", "z", "s"))
     assert x["set_position"][-1] == (41.0 if retracted else 36.0)
     assert z["set_position"].min() > 20.0, "the thread did not come to its end"
-    if retracted and node != "z":
+    if retracted and node == "s":
         lost = next(event.cycle for event in recorded.events if event.error_id == 26101)
         inside = (x["cycle"] >= lost) & (x["set_position"] < 37.0)
         assert inside.sum() > 10
