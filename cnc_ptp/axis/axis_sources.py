@@ -154,10 +154,10 @@ class PathSource:
         if not axis.on_path:
             return
         axis.take(T.LEAVE_PATH)
-        if axis.ptp.state(cycle)[1] != 0.0:
-            axis.fault(cycle, PATH_NOT_ACCEPTED, "the channel released the axis while it moved")
-        elif reason:
+        if reason:
             axis.fault(cycle, UPSTREAM_LOST, reason)
+        elif axis.ptp.state(cycle)[1] != 0.0:
+            axis.fault(cycle, PATH_NOT_ACCEPTED, "the channel released the axis while it moved")
         else:
             axis.advance_state(cycle)
 

@@ -29,10 +29,9 @@ def test_watchdog_texts(source: str) -> None:
     on_path(bench)
     bench.accepted("upstream_lost", source=source)
     bench.run(200)
-    assert bench.event_texts() == [
-        f"P-ERR-26101 axis x: no block of '{source}' came within the watchdog time; the axis stops on its own ramp "
-        "(ErrorStop)"
-    ]
+    lost = f"P-ERR-26101 axis x: no block of '{source}' came within the watchdog time"
+    with_path = [f"{lost}; the axis stops with its path"] if source == "plc" else []
+    assert bench.event_texts() == [*with_path, f"{lost}; the axis stops on its own ramp (ErrorStop)"]
     assert_axis_smooth(bench.blocks[2:], acceleration=5000.0, jerk=50_000.0)
     assert set(bench.column("error_id")[30:]) == {26101}
 

@@ -195,9 +195,9 @@ def test_an_axis_fault_stops_the_path_within_its_tolerance() -> None:
     for seed in range(5):
         bench = MachineBench(program(*lines), end_when_idle=False)
         bench.run(random.Random(seed).randrange(10, 140) * 0.01)
-        bench.give("z", "upstream_lost", source="clock")
+        bench.give("z", "upstream_lost", source="plc")
         bench.run(0.5)
-        assert [text[:11] for text in bench.errors()] == ["P-ERR-26101", "P-ERR-22012"], seed
+        assert [text[:11] for text in bench.errors()] == ["P-ERR-26101", "P-ERR-26101", "P-ERR-22012"], seed
         assert max(programmed.distance(Point(*point[:2])) for point in path(bench)) <= 0.05 + 1e-9
         smooth(bench)
         assert bench.give("z", "reset").accepted and bench.give("channel", "reset").accepted
