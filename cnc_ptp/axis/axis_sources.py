@@ -49,8 +49,8 @@ class PathSource:
         self._first_cycle = 0
         self._to_go = [0.0]
         """Distance to the end of the element: at the end of the last block, then in each cycle of this one."""
-        self._stops_with_path = ""
-        """Why the axis is to stop with its path, empty if it is not."""
+        self._lost = ""
+        """Who is lost, so that the axis is to stop with its path; empty if it is not."""
 
     def setpoints(self, first_cycle: int, inputs: Mapping[str, CycleBlock]) -> Setpoints | None:
         """The setpoints of the channel that moves the axis, none if no channel does; switches the setpoint source."""
@@ -58,8 +58,8 @@ class PathSource:
         if channel is None:
             self._leave(first_cycle)
             return None
-        if self._stops_with_path and self._axis.on_path and not channel.error_id[0]:
-            self._axis.fault(first_cycle, UPSTREAM_LOST, self._stops_with_path)
+        if self._lost and self._axis.on_path and not channel.error_id[0]:
+            self._stop_alone(first_cycle, self._lost)
             return None
         count = channel.count
         start = channel.axes.index(self._axis.name) * count
@@ -86,16 +86,19 @@ class PathSource:
             return None
         return path_stop(block, self._axes, self._spindles)
 
-    def stop_with_path(self, reason: str) -> bool:
-        """For what its channel notices as well: the axis stays on the path until that stands; False if it has none.
+    def stop_with_path(self, lost: str) -> bool:
+        """Without `lost`, as its channel notices, too: the axis stays on the path until that stands; False off a path.
 
         When a block of the channel comes that is not one of its error reaction, the axis stops on its own ramp.
         """
         axis = self._axis
         if not axis.on_path or axis.superposed or axis.coupled or axis.carried is not None:
             return False
-        self._stops_with_path = reason
+        self._lost = lost
         return True
+
+    def _stop_alone(self, cycle: int, source: str) -> None:
+        self._axis.fault(cycle, UPSTREAM_LOST, f"no block of '{source}' came within the watchdog time")
 
     def watch(self, cycle: int, velocity: float) -> None:
         """A path no longer waits in a direction when it reverses, or when another element starts."""
@@ -150,12 +153,12 @@ class PathSource:
     def _leave(self, cycle: int) -> None:
         """The path has ended; external setpoints superimposed on it continue alone, or come to rest."""
         axis = self._axis
-        reason, self._stops_with_path = self._stops_with_path, ""
+        lost, self._lost = self._lost, ""
         if not axis.on_path:
             return
         axis.take(T.LEAVE_PATH)
-        if reason:
-            axis.fault(cycle, UPSTREAM_LOST, reason)
+        if lost:
+            self._stop_alone(cycle, lost)
         elif axis.ptp.state(cycle)[1] != 0.0:
             axis.fault(cycle, PATH_NOT_ACCEPTED, "the channel released the axis while it moved")
         else:

@@ -209,11 +209,14 @@ class AxisUnit(Unit):
         leads = axis.on_path or (axis.coupling is not None and axis.coupling.master == source)
         if source not in (PLC, CLOCK) and not leads:
             return None
-        reason, in_step = f"no block of '{source}' came within the watchdog time", self._path.stop(cycle)
-        if source == PLC and in_step is None and self._path.stop_with_path(reason):
-            text = f"axis {self.name}: {reason}; the axis stops with its path"
+        in_step = self._path.stop(cycle)
+        if source == PLC and in_step is None and self._path.stop_with_path(source):
+            text = (
+                f"axis {self.name}: no block of '{source}' came within the watchdog time; the axis stops with its path"
+            )
             self.event(cycle, Severity.ERROR, UPSTREAM_LOST, text)
         else:
+            reason = f"no block of '{source}' came within the watchdog time"
             axis.fault(cycle, UPSTREAM_LOST, reason, path_stop=in_step)
         return None
 
