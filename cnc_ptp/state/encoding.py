@@ -46,7 +46,7 @@ from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.streamed_program import StreamedProgram
 from cnc_ptp.state.faults import not_storable
 from cnc_ptp.state.made_again import interpreter_parts, is_open, program_parts
-from cnc_ptp.state.roots import PACKAGE, Path, Roots, attributes, kernel_module
+from cnc_ptp.state.roots import PACKAGE, Path, Roots, kernel_module, names_and_values
 
 Row = list[Any]
 LONG_TEXT = 500
@@ -57,7 +57,10 @@ LongLists = dict[int, tuple[Any, str | None]]
 """By identity: the list itself and its digest, None where it is not kept beside."""
 OF_VALUES = frozenset("ltnegFxTdabf")
 """Rows whose objects nobody changes, or only their owner."""
-AS_THEY_ARE = (type(None), bool, int, float, str)
+AS_THEY_ARE = frozenset((type(None), bool, int, float))
+Place = tuple[Any, str, Any]
+"""Where an object was met: the place of what leads to it, and the text of the step from there with its value."""
+ROOT: Place = (None, "", None)
 
 
 class Encoder:
@@ -79,8 +82,8 @@ class Encoder:
         self._number: dict[int, int] = {}
         self._kept: list[Any] = []
         """All objects that have a row: what a compiled attribute gives may be made for the occasion."""
-        self._waiting: list[tuple[Any, Row, str]] = []
-        self._place = ""
+        self._waiting: list[tuple[Any, Row, Place]] = []
+        self._place = ROOT
         self._live: dict[int, tuple[RunningBlocks, Path]] = {}
         for blocks in interpreters:
             if is_open(blocks):
@@ -88,7 +91,7 @@ class Encoder:
 
     def encode(self, root: object) -> Any:
         """The value of an object; all that it leads to gets a row. Raises CncError 26150."""
-        value = self._value(root, "")
+        value = self._value(root)
         while self._waiting:
             found, row, self._place = self._waiting.pop()
             self._fill(found, row)
@@ -102,14 +105,17 @@ class Encoder:
                 self._live[id(part)] = blocks, path
                 self._kept.append(part)
 
-    def _value(self, found: Any, step: str) -> Any:
+    def _value(self, found: Any, step: str = "", key: object = None) -> Any:
+        """`step` and `key`: from what is being filled to `found`."""
         kind = type(found)
         if kind in AS_THEY_ARE:
-            return self._text(found) if kind is str and len(found) >= LONG_TEXT else found
+            return found
+        if kind is str:
+            return self._text(found) if len(found) >= LONG_TEXT else found
         number = self._number.get(id(found))
         if number is None:
             number = self._new_row(found)
-            self._waiting.append((found, self.rows[number], f"{self._place}{step}"))
+            self._waiting.append((found, self.rows[number], (self._place, step, key)))
         return [number]
 
     def _new_row(self, found: Any) -> int:
@@ -128,7 +134,8 @@ class Encoder:
         return [number]
 
     def _values(self, items: Iterable[Any], step: str = "[]") -> list[Any]:
-        return [self._value(item, step) for item in items]
+        """Most are no objects: a call for each would take half of the time."""
+        return [item if type(item) in AS_THEY_ARE else self._value(item, step) for item in items]
 
     def _fill(self, found: Any, row: Row) -> None:
         path = self._roots.path(found)
@@ -137,23 +144,27 @@ class Encoder:
             return
         live = self._live.get(id(found))
         if live is not None:
-            row += ["L", self._value(live[0], ""), live[1]]
+            row += ["L", self._value(live[0]), live[1]]
             return
         form = FORMS.get(type(found)) or form_of(found)
         if form is None:
-            raise not_storable(self._place or "its root", f"{described(found)}")
+            raise not_storable(written(self._place) or "its root", described(found))
         form(self, found, row)
 
     # forms
 
     def _object(self, found: Any, row: Row) -> None:
-        named = dict(attributes(found))
-        key = (type(found), tuple(named))
+        names, values = names_and_values(found)
+        key = (type(found), names)
         shape = self._shape_of.get(key)
         if shape is None:
             shape = self._shape_of[key] = len(self.shapes)
-            self.shapes.append([class_name(type(found)), list(named)])
-        row += ["o", shape, *(self._value(value, f".{name}") for name, value in named.items())]
+            self.shapes.append([class_name(type(found)), list(names)])
+        row += ["o", shape]
+        row += [
+            value if type(value) in AS_THEY_ARE else self._value(value, ".{}", name)
+            for name, value in zip(names, values, strict=True)
+        ]
 
     def _tuple(self, found: tuple[Any, ...], row: Row) -> None:
         row += ["t", *self._values(found)]
@@ -171,13 +182,17 @@ class Encoder:
         row += ["q", found.maxlen, *self._values(found)]
 
     def _pairs(self, found: dict[Any, Any]) -> list[Any]:
-        return [part for key, value in found.items() for part in (self._value(key, ""), self._value(value, f"[{key}]"))]
+        return [
+            part
+            for key, value in found.items()
+            for part in (self._value(key), value if type(value) in AS_THEY_ARE else self._value(value, "[{}]", key))
+        ]
 
     def _dict(self, found: dict[Any, Any], row: Row) -> None:
         row += ["d", *self._pairs(found)]
 
     def _defaultdict(self, found: defaultdict[Any, Any], row: Row) -> None:
-        row += ["D", self._value(found.default_factory, ""), *self._pairs(found)]
+        row += ["D", self._value(found.default_factory), *self._pairs(found)]
 
     def _named_tuple(self, found: tuple[Any, ...], row: Row) -> None:
         row += ["n", class_name(type(found)), *self._values(found)]
@@ -206,7 +221,7 @@ class Encoder:
 
     def _again(self, name: str, parts: tuple[Any, ...] | None, row: Row) -> None:
         if parts is None:
-            raise not_storable(self._place, f"a {name} that cannot be made again")
+            raise not_storable(written(self._place), f"a {name} that cannot be made again")
         row += ["R", name, *self._values(parts, "()")]
 
     def _partial(self, found: partial[Any], row: Row) -> None:
@@ -242,13 +257,13 @@ class Encoder:
         row += ["c", *arguments]
 
     def _exception(self, found: Exception, row: Row) -> None:
-        row += ["E", class_name(type(found)), self._value(found.args, ".args"), self._value(dict(vars(found)), "")]
+        row += ["E", class_name(type(found)), self._value(found.args, ".args"), self._value(dict(vars(found)))]
 
     def _function(self, found: Any, row: Row) -> None:
         row += ["F", found.__module__, found.__qualname__]
 
     def _marked_text(self, found: str, row: Row) -> None:
-        row += ["T", class_name(type(found)), str.__str__(found), self._value(dict(vars(found)), "")]
+        row += ["T", class_name(type(found)), str.__str__(found), self._value(dict(vars(found)))]
 
 
 Form = Callable[[Encoder, Any, Row], None]
@@ -304,6 +319,16 @@ def _form_of_class(cls: type) -> Form | None:
     if form is not None:
         FORMS[cls] = form
     return form
+
+
+def written(place: Place) -> str:
+    """A place as it is told."""
+    steps: list[str] = []
+    here: Any = place
+    while here is not None:
+        here, step, key = here
+        steps.append(step.format(key))
+    return "".join(reversed(steps))
 
 
 def digest_of(text: str) -> str:

@@ -7,6 +7,7 @@ import sys
 from collections.abc import Iterable, Iterator
 from functools import cache
 from importlib import import_module
+from operator import attrgetter
 from types import BuiltinFunctionType, FunctionType, MappingProxyType, ModuleType
 from typing import Any
 
@@ -116,14 +117,32 @@ def attribute_names(cls: type) -> tuple[str, ...]:
     return known
 
 
-def attributes(found: Any) -> Iterator[tuple[str, Any]]:
+GETTERS: dict[type, attrgetter[tuple[Any, ...]]] = {}
+"""For each class with two attributes or more: all at once."""
+
+
+def names_and_values(found: Any) -> tuple[tuple[str, ...], tuple[Any, ...]]:
     """The attributes of an instance that have a value."""
-    for name in attribute_names(type(found)):
+    cls = type(found)
+    names, values = attribute_names(cls), None
+    if len(names) > 1:
+        getter = GETTERS.get(cls)
+        if getter is None:
+            getter = GETTERS[cls] = attrgetter(*names)
         try:
-            yield name, getattr(found, name)
+            values = getter(found)
         except AttributeError:
-            continue
-    yield from getattr(found, "__dict__", {}).items()
+            values = None
+    if values is None:
+        names = tuple(name for name in names if hasattr(found, name))
+        values = tuple(getattr(found, name) for name in names)
+    own: dict[str, Any] | None = getattr(found, "__dict__", None)
+    return ((*names, *own), (*values, *own.values())) if own else (names, values)
+
+
+def attributes(found: Any) -> Iterator[tuple[str, Any]]:
+    """The same in pairs."""
+    return zip(*names_and_values(found), strict=True)
 
 
 @cache
