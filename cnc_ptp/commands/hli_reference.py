@@ -7,7 +7,7 @@ import sys
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from cnc_ptp.plc.hli.objects import UNIT_TEXTS, Origin, origin
+from cnc_ptp.commands.hli_origins import UNIT_TEXTS, Origin, origin
 from cnc_ptp.protocol.control_units import CONTROL_UNITS, NUMBER, PERCENT, SWITCH, ControlUnit
 from cnc_ptp.wire.schemas import message_file
 
@@ -15,10 +15,11 @@ INTRODUCTION = """\
 # Objects of the HLI
 
 Made by `python -m cnc_ptp.commands.hli_reference` from `cnc_ptp/protocol/control_units.py`,
-`cnc_ptp/plc/hli/objects.py` and the `.msg` files; do not edit. What the columns mean: [plc_hli.md](plc_hli.md).
+`cnc_ptp/commands/hli_origins.py` and the `.msg` files; do not edit. What the columns mean: [plc_hli.md](plc_hli.md).
 
 A value is a switch or a number; *HLI unit* counts where a message says `units` = HLI. *Manual*: pages of TF5200
-(spindle), chapters of TX1250. *TwinCAT*: names below `gpAx[i]^` and `gpCh[i]^`, or in words.
+(spindle), chapters of TX1250. *TwinCAT*: names below `gpAx[i]^` and `gpCh[i]^` (`StateBahn_Data` in older versions),
+those of the cyclic interface of an NC axis (`PlcToNc`, `NcToPlc`), or words; – where no public document names one.
 """
 HEADLINES = {"axis": "Axis", "spindle": "Spindle", "channel": "Channel"}
 VALUES = {SWITCH: "switch", PERCENT: "number", NUMBER: "number"}
@@ -96,7 +97,7 @@ def other_rows(kind: str, message: str) -> Iterator[str]:
 
 def shown(source: Origin) -> tuple[str, str]:
     manual = f"TF5200 {source.manual}" if source.manual.startswith("p.") else source.manual
-    return source.twincat, manual
+    return source.twincat or "–", manual or "–"
 
 
 if __name__ == "__main__":

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from cnc_ptp.commands.hli_origins import ORIGINS, UNIT_TEXTS
 from cnc_ptp.commands.hli_reference import HEADLINES, fields_of, hli_markdown
 from cnc_ptp.plc.hli import object_control
-from cnc_ptp.plc.hli.objects import ORIGINS, UNIT_TEXTS
 from cnc_ptp.protocol import overlay, unit
 from cnc_ptp.protocol.control_units import CONTROL_UNITS, SWITCH
 
@@ -41,6 +41,16 @@ def test_every_field_that_has_an_origin_is_there(kind: str) -> None:
     names = {field.name for what in ("Control", "Status") for field in fields_of(f"{HEADLINES[kind]}Hli{what}")}
     stems = names | {re.sub("_(hli|rpm|deg)$", "", name) for name in names}
     assert set(ORIGINS[kind]) <= stems
+
+
+@pytest.mark.parametrize("kind", HEADLINES)
+def test_every_other_field_says_what_it_is(kind: str) -> None:
+    units = {each.name for each in CONTROL_UNITS[kind]}
+    fields = [field for what in ("Control", "Status") for field in fields_of(f"{HEADLINES[kind]}Hli{what}")]
+    shown = [field for field in fields if field.name not in units]
+    inner = [part for field in shown if field.type.startswith("cnc_ptp/Hli") for part in fields_of(field.type[8:])]
+    whole = [field for field in shown if not field.type.startswith("cnc_ptp/Hli")]
+    assert [field.name for field in (*whole, *inner) if not field.comment] == []
 
 
 def test_the_page_names_every_number() -> None:

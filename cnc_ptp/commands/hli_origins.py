@@ -2,7 +2,7 @@
 
 What they are (values, edge or level, commands) says protocol/control_units.py; docs/hli_objects.md is made from both
 and from the comments of the messages. Names of TwinCAT are those of the public HLI documentation below gpAx[i]^ and
-gpCh[i]^; PlcToNc is the cyclic interface of an NC axis.
+gpCh[i]^, and of the older one (StateBahn_Data); PlcToNc and NcToPlc are the cyclic interface of an NC axis.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 
 class Origin(NamedTuple):
-    """Name in TwinCAT, empty where there is none; page of the spindle manual (TF5200) or chapter of TX1250."""
+    """Name in TwinCAT, empty where none is known; page of the spindle manual (TF5200) or chapter of TX1250."""
 
     twincat: str = ""
     manual: str = ""
@@ -82,7 +82,7 @@ UNIT_TEXTS: Mapping[str, Mapping[str, UnitText]] = {
         "single_block": UnitText(
             "0 off, 1 stops after each block, 2 after each motion", Origin("MCControlDecoder_Data: SingleBlock")
         ),
-        "optional_stop": UnitText("M01 stops", Origin()),
+        "optional_stop": UnitText("M01 stops", Origin("m01_stop_enable")),
         "block_skip": UnitText(
             "bit n - 1: blocks with skip level n are left out, from the next start on",
             Origin("decoder_mc_control.program_block_ignore"),
@@ -106,18 +106,28 @@ OF_ALL: Mapping[str, Origin] = {
 ORIGINS: Mapping[str, Mapping[str, Origin]] = {
     "axis": {
         "external": Origin("external commanding of the axis", "TX1250 2.1 – 2.3"),
-        "set_position": Origin("ipo_state", "TX1250 2.1"),
-        "actual_position": Origin("lr_state", "TX1250 2.1"),
-        "following_error": Origin("lr_state", ""),
+        "set_position": Origin("lr_state.active_position_acs_r; NcToPlc.SetPos", "TX1250 2.1, 4.3"),
+        "actual_position": Origin("lr_state.current_position_acs_r; NcToPlc.ActPos", "TX1250 2.1, 4.3"),
+        "following_error": Origin("NcToPlc.PosDiff", "TX1250 4.3"),
+        "set_velocity": Origin("NcToPlc.SetVelo", "TX1250 4.3"),
+        "actual_velocity": Origin("NcToPlc.ActVelo", "TX1250 4.3"),
+        "state": Origin("lr_state.axis_state_r; NcToPlc.AxisState"),
         "status_bits": Origin("NcToPlc.StateDWord", "TX1250 2.6"),
+        "enabled": Origin("NcToPlc.StateDWord.0", "TX1250 4.3"),
+        "in_position": Origin("NcToPlc.StateDWord.4", "TX1250 4.3"),
+        "moving": Origin("not NcToPlc.StateDWord.2", "TX1250 4.3"),
+        "referenced": Origin("NcToPlc.StateDWord.1", "TX1250 4.3"),
+        "feed_withheld": Origin("lr_state.axis_state_r = HLI_AXIS_HOLD"),
+        "error_id": Origin("head.error_r; NcToPlc.ErrorCode", "TX1250 4.3"),
+        "job": Origin("NcToPlc.StateDWord.8", "TX1250 4.3"),
     },
     "spindle": {
         "external": Origin("ipo_mc_control.ext_to_ipo", "p. 11, 60"),
-        "set_speed": Origin("nominal speed", "p. 60"),
-        "actual_speed": Origin("actual speed", "p. 60"),
-        "programmed_speed": Origin("speed programmed", "p. 60"),
-        "target_position": Origin("target position", "p. 60"),
-        "actual_position": Origin("actual position", "p. 60"),
+        "set_speed": Origin("lr_state.active_rev_r", "p. 60"),
+        "actual_speed": Origin("lr_state.current_rev_r", "p. 60"),
+        "programmed_speed": Origin("lr_state.cmd_rev_r", "p. 60"),
+        "target_position": Origin("lr_state.end_position_acs_r", "p. 60"),
+        "actual_position": Origin("lr_state.current_position_acs_r", "p. 60"),
         "distance_to_go": Origin("distance to go", "p. 60"),
         "mode": Origin("ipo_state.spindle.mode_r", "p. 23, 60"),
         "state": Origin("operating state", "p. 23, 60"),
@@ -127,7 +137,9 @@ ORIGINS: Mapping[str, Mapping[str, Origin]] = {
         "stopped": Origin("lr_state.rev_null_r", "p. 31, 60"),
         "referenced": Origin("", "p. 32"),
         "job_error": Origin("job error", "p. 60"),
+        "gear": Origin("", "p. 35 – 38"),
         "gear_request": Origin("", "p. 35 – 38"),
+        "source": Origin("", "p. 11"),
         "plc_commands": Origin("", "p. 11"),
         "plc_acknowledged": Origin("", "p. 11"),
     },
@@ -135,6 +147,12 @@ ORIGINS: Mapping[str, Mapping[str, Origin]] = {
         "acknowledge": Origin("techno_unit_std_sync, techno_unit_late_sync", "p. 27, 28"),
         "acknowledge_enable_r": Origin("", "p. 27, 28"),
         "requests": Origin("techno_unit_std_sync, techno_unit_late_sync", "p. 27, 28"),
+        "state": MODE,
+        "line": Origin("mc_block_count_r"),
+        "path_velocity": Origin("bahn_state.active_feed_r; StateBahn_Data.D_ActiveFeed"),
+        "programmed_feed": Origin("StateBahn_Data.D_CommandFeed"),
+        "distance_to_go": Origin("bahn_state.covered_distance_r, a share of the block"),
+        "done": Origin("StateBahn_Data.X_ProgramEnd"),
     },
 }
 """Kind of object, field of its messages that is no control unit; `set_speed` is set_speed_rpm and set_speed_hli."""
