@@ -23,7 +23,7 @@ from cnc_ptp.protocol.unit import A_CLIENT, PLC, Unit
 from cnc_ptp.spindle.spindle_unit import SpindleUnit
 from cnc_ptp.state.machine_state import StateStore
 
-UNCHANGED = ("nothing was changed", "nothing was executed")
+UNCHANGED = ("nothing was changed", "nothing was executed", "nothing was started")
 """What a refusal says that leaves everything as it was."""
 
 

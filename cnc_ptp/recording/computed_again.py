@@ -10,7 +10,7 @@ from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.authority import NOT_AUTHORISED
 from cnc_ptp.protocol.blocks import Command, CommandRecord
-from cnc_ptp.protocol.commands import COUPLINGS
+from cnc_ptp.protocol.commands import THROUGH_PLC
 from cnc_ptp.protocol.unit import PLC
 
 ByCycle = dict[int, list[CommandRecord]]
@@ -24,14 +24,14 @@ def commands_by_cycle(records: Iterable[CommandRecord], machine: MachineParamete
     """Those to channels, spindles and axes; what the PLC made of its own are among them."""
     by_cycle: ByCycle = defaultdict(list)
     for record in records:
-        if record.target != PLC and not is_refused_coupling(record, machine):
+        if record.target != PLC and not may_be_refused_by_plc(record, machine):
             by_cycle[record.cycle].append(record)
     return by_cycle
 
 
-def is_refused_coupling(record: CommandRecord, machine: MachineParameters) -> bool:
+def may_be_refused_by_plc(record: CommandRecord, machine: MachineParameters) -> bool:
     """It changed nothing, and the PLC's reason is not recorded: fed in again, it might be carried out."""
-    return not record.accepted and record.command in COUPLINGS and record.target in machine.axes
+    return not record.accepted and record.command in THROUGH_PLC and record.target in machine.axes
 
 
 def by_unit(commands: Iterable[Command]) -> dict[str, list[Command]]:
