@@ -82,7 +82,7 @@ def test_the_command_counts_its_steps(capsys: pytest.CaptureFixture[str]) -> Non
     assert capsys.readouterr().out.startswith("30 steps from seed 4 in ")
 
 
-@pytest.mark.parametrize("seed", [22, 1010, 40003])
+@pytest.mark.parametrize("seed", [22, pytest.param(1010, marks=pytest.mark.long), 40003])
 def test_a_life_that_has_found_a_replay_with_another_refusal(seed: int) -> None:
     """A source, and a direction, that were not a number came back from the recording as a text; a `change_cam` that the
     PLC had refused was carried out.
