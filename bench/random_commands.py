@@ -30,6 +30,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.protocol.blocks import AxisBlock, Command, CommandRecord, SpindleBlock
 from cnc_ptp.protocol.commands import COMMANDS, INTERNAL, THROUGH_PLC, Argument
+from cnc_ptp.protocol.control_units import CONTROL_UNITS
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.recording.computed_again import commands_by_cycle, computed_again, fresh_machine
 from cnc_ptp.recording.motion_check.check import check_motion
@@ -47,6 +48,8 @@ LIFE = 300
 """Steps of a machine."""
 POWERED = 0.9
 """Share of axes and spindles that have power from the start."""
+FREED = 0.03
+"""Share of steps that set all units free first: otherwise most of a life is spent at a standstill."""
 LEFT_OUT = INTERNAL | {"write_drive_parameter", "read_drive_parameter", "write_parameter", "serve", "set_life_sign"}
 """Commands of other units, and those that change what the checker takes from the machine file."""
 BAD = (math.nan, math.inf, -math.inf, 1e300, -1e300, 0.0, -0.0, "1", None, True, [], {})
@@ -90,9 +93,10 @@ def machine_of(path: str) -> MachineParameters:
 class CommandedMachine(CheckedMachine):
     """A machine with the commands, blocks and violations of its run."""
 
-    def __init__(self, seed: int, machine: str = "") -> None:
+    def __init__(self, seed: int, machine: str = "", *, freed: float = FREED) -> None:
         """`machine`: file below the repository; the seed chooses one of MACHINES without it."""
         self.seed, self.random = seed, random.Random(seed)
+        self._helper, self._freed = random.Random(f"free {seed}"), freed
         super().__init__(machine_of(machine or self.random.choice(MACHINES)))
         self.blocks: dict[str, list[Any]] = {name: [] for name in self.units}
         self.records: list[CommandRecord] = []
@@ -105,10 +109,32 @@ class CommandedMachine(CheckedMachine):
 
     def step(self) -> None:
         """A command, or time."""
+        if self._helper.random() < self._freed:
+            self.set_free()
         if self.random.random() < 0.3:
             self.run(self.random.choice((1, 1, 2, 5, 20, 60)))
         else:
             self.random_command()
+
+    def set_free(self) -> None:
+        """As somebody would who wants to go on: nothing is held any more, errors are reset, the power is on."""
+        for unit, kind in self.kinds.items():
+            commands = COMMANDS[kind]
+            for control in CONTROL_UNITS.get(kind, ()):
+                self.give(unit, "overlay", {"control_unit": control.name, "enabled": False})
+            for command in ("hold_stop", "feed_hold", "set_emergency_stop"):
+                if command in commands:
+                    self.give(unit, command, {"enabled": False})
+            if "set_feed_release" in commands:
+                self.give(unit, "set_feed_release", {"forward": True, "backward": True})
+            if "set_override" in commands:
+                self.give(unit, "set_override", {"percent": 100.0})
+        self.run(1)
+        for unit, kind in self.kinds.items():
+            if kind != "spindle":  # it would stop
+                self.give(unit, "reset", {})
+            if "power" in COMMANDS[kind]:
+                self.give(unit, "power", {"enabled": True})
 
     def random_command(self) -> None:
         unit = self.random.choice([*self.kinds])

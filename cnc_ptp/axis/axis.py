@@ -266,6 +266,10 @@ class Axis:
         self.leave_trajectory(cycle)
         self.target_window.target = None
         self.ptp.stop(cycle, self.own_limits, locks=locks)
+        self._stop_superposition(cycle)
+
+    def _stop_superposition(self, cycle: int) -> None:
+        """What is superimposed comes to rest, each on its ramp."""
         self.compensation.stop()
         self.external.disable(cycle)
         self.halt_added(cycle)
@@ -545,14 +549,17 @@ class Axis:
     ) -> None:
         """Error reaction: own ramp from the setpoint of `cycle`, state ErrorStop; nothing waits then.
 
-        The slave of a gantry pair whose group has an error follows its master to standstill (`end_with_master`).
-        `setpoint` within a block, if it comes from another source than the axis' own generator. `path_stop` is the ramp
-        in step with a spindle, instead of its own. `values`: the numbers of the reason by name.
+        The slave of a gantry pair whose group has an error follows its master to standstill (`end_with_master`); what
+        is superimposed on it ends on its ramp. `setpoint` within a block, if it comes from another source than the
+        axis' own generator. `path_stop` is the ramp in step with a spindle, instead of its own. `values`: the numbers
+        of the reason by name.
         """
         self.error_id = error_id
         self.drop_waiting(cycle)
         pair = self.pair_in(error_id)
         if pair is not None:
+            self.jobs.end_superimposed(cycle, JobStatus.FAILED, error_id)
+            self._stop_superposition(cycle)
             self._note_propagation(cycle, error_id)
             text = f"axis {self.name}: {reason}; the axis stops with its master {pair.master} (ErrorStop)"
             self._report_error(cycle, error_id, text, values)
@@ -611,9 +618,13 @@ class Axis:
         self.take(T.FAULT)
 
     def end_with_master(self, cycle: int, position: float) -> None:
-        """A slave in error that has come to rest with its master, its basic motion at `position`."""
+        """A slave in error that has come to rest with its master, its basic motion at `position`.
+
+        What is superimposed on it may still move: that ends on the axis' own ramp.
+        """
         self.ptp.take_over(cycle, position, 0.0, 0.0)
         self.absorb(cycle)
+        self.ptp.stop(cycle, self.own_limits, at_least=True)
         self.target_window.forget()
         self.take(T.FAULT)
 

@@ -265,6 +265,25 @@ def test_gantry_fault_stops_both() -> None:
     assert {bench.state("x"), bench.state("y")} == {S.STANDSTILL}
 
 
+@pytest.mark.parametrize("master_moves", [False, True])
+def test_a_superimposed_motion_ends_with_the_fault_of_its_gantry_slave(master_moves: bool) -> None:
+    """It drives the pair apart, and must not outlive the error that this is: found by random commands, seed 70000."""
+    bench = gantry(0.5)
+    bench.run(0.3 if master_moves else 2.0)
+    moved = bench.values("x")[-1]
+    bench.do("y", "move_superimposed", distance=32.0, velocity_difference=50.0)
+    bench.run(2.0)
+    assert bench.errors()[0].startswith("P-ERR-23055 axis y: ")
+    assert {bench.state("x"), bench.state("y")} == {S.ERROR_STOP}
+    assert bench.values("y", "set_velocity")[-500:].tolist() == [0.0] * 500
+    assert (bench.values("x")[-1] > moved + 1.0) == master_moves
+    assert 0.5 < bench.values("y")[-1] - bench.values("x")[-1] - 5.0 < 6.0  # nearer than the 32 mm of the command
+    for axis in "xy":
+        bench.do(axis, "reset")
+    bench.run(0.05)
+    assert {bench.state("x"), bench.state("y")} == {S.STANDSTILL}
+
+
 def test_gantry_master_that_loses_its_enable_stops_with_its_slave() -> None:
     bench = gantry(5.0)
     bench.run(0.3)
