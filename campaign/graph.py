@@ -78,9 +78,10 @@ class Graph:
         return names
 
     def leftovers(self) -> list[str]:
-        """Shared memory and claims that the run has not taken away."""
+        """Shared memory that nobody uses and claims that the run has not taken away."""
         claims = [name for name in Path("/proc/net/unix").read_text().split() if name == f"@{CLAIM}{self.domain}"]
-        return sorted(shared_memory() - self._shared) + claims
+        new = shared_memory() - self._shared
+        return sorted(new - mapped() if new else new) + claims
 
     def end(self) -> None:
         """Whatever became of it: nothing of it runs on."""
@@ -122,3 +123,15 @@ def free_domain(wish: int, *, first: int = 101, count: int = 100) -> int:
                 continue
             return domain
     raise RuntimeError(f"{count} runs at once")
+
+
+def mapped() -> set[str]:
+    """Shared memory that a living process uses: another program's, since those of the run are looked for before."""
+    found: set[str] = set()
+    for maps in Path("/proc").glob("[0-9]*/maps"):
+        try:
+            words = maps.read_text().split()
+        except OSError:  # it has ended, or is another user's
+            continue
+        found.update(word for word in words if word.startswith("/dev/shm/"))
+    return found

@@ -31,6 +31,7 @@ from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.protocol.blocks import AxisBlock, Event, Severity, SpindleBlock
 from cnc_ptp.protocol.event_values import event_values
+from cnc_ptp.protocol.unit import UPSTREAM_LOST
 from cnc_ptp.wire.block_codec import codec_of
 from cnc_ptp.wire.stamps import Stamps
 
@@ -59,6 +60,9 @@ class DriveWatch:
     No executor is woken by these blocks; some times in each watchdog time the newest ones are read. In machine time a
     stop begins with the cycle after the last setpoint, as everything else that depends on the unit: units wait for its
     blocks, so that all of them come to that cycle when the watchdog time has passed.
+
+    A clock that was itself held up for longer than the watchdog time does not know what units have done without it: the
+    drive of one that is not heard for so long afterwards, or that has stopped because of it, is left to its unit.
     """
 
     def __init__(self, node: PollingNode, machine: MachineParameters) -> None:
@@ -72,7 +76,12 @@ class DriveWatch:
         self._seconds = machine.watchdog_ms / 1000.0
         self._watchdog = Watchdog(self._units, seconds=self._seconds)
         self._cycle_time = machine.cycle_time_us * 1e-6
-        self._due = self._stopped_at = 0.0
+        self._due = self._stopped_at = self._resumed_at = 0.0
+        self._looked = time.monotonic()
+        self.longest_gap = self._seconds
+        """Seconds between two looks after which this process was held up."""
+        self._known = {*self._units}
+        """Units whose newest block is here: all, as long as this process was not held up."""
         self._publisher = node.create_publisher(msg.DriveStop, DRIVE_STOPS, EVENTS)
         self._events = EventPublisher(node)
         node.input_period = float("inf")  # this class says when
@@ -82,11 +91,17 @@ class DriveWatch:
 
     def heard(self, unit: str) -> None:
         """A unit that waits for others says that it lives."""
+        self._hear(unit)
+
+    def _hear(self, unit: str) -> None:
         self._watchdog.heard(unit)
+        if time.monotonic() - self._resumed_at > self._seconds:
+            self._known.add(unit)
 
     def restart(self) -> None:
         """The run begins: all count as heard."""
         self._watchdog.restart()
+        self._looked = time.monotonic()
 
     def look(self, stamps: Stamps, *, begun: bool) -> None:
         """To be called often: some times in each watchdog time, drives whose unit has been silent for it brake."""
@@ -94,12 +109,25 @@ class DriveWatch:
         if now < self._due:
             return
         self._due = now + self._seconds / 4.0
+        if now - self._looked > self.longest_gap:
+            self._resumed_at = now
+            self._known.clear()
+        self._looked = now
         self._node.take_inputs()
         if self._watchdog.was_suspended():
             self._watchdog.restart()
             return
-        for unit in self._watchdog.silent([*self._units], begun=begun):
+        for unit in self._watchdog.silent(self._judged(), begun=begun):
             self._stop(unit, stamps)
+
+    def _judged(self) -> list[str]:
+        """Units whose drives brake when they fall silent."""
+        return [unit for unit in self._units if unit in self._known and not self._stops_alone(unit)]
+
+    def _stops_alone(self, unit: str) -> bool:
+        """While this process was held up, the unit has lost the clock."""
+        block = self._newest.get(unit)
+        return self._resumed_at > 0.0 and block is not None and block.error_id[-1] == UPSTREAM_LOST
 
     def settled(self, stamps: Stamps) -> bool:
         """At the end of a run: True when no drive got a setpoint of a motion last; those of silent units brake before.
@@ -107,14 +135,14 @@ class DriveWatch:
         Then nobody says that it lives, so that a drive that stands is left alone.
         """
         self._node.take_inputs()
-        moved = [unit for unit in self._units if unit in self._newest and is_commanded(self._newest[unit])]
+        moved = [unit for unit in self._judged() if unit in self._newest and is_commanded(self._newest[unit])]
         for unit in self._watchdog.silent(moved, begun=True, most=LAST_PATIENCE):
             self._stop(unit, stamps)
             moved.remove(unit)
         return not moved and time.monotonic() - self._stopped_at > FAREWELL
 
     def _take(self, unit: str, block: AxisBlock | SpindleBlock) -> None:
-        self._watchdog.heard(unit)
+        self._hear(unit)
         if block.count:
             self._newest[unit] = block
 

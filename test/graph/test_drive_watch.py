@@ -21,6 +21,7 @@ from cnc_ptp.nodes.polling_node import PollingNode
 from cnc_ptp.nodes.topics import BLOCKS, DRIVE_STOPS, EVENT, EVENTS, block_topic
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import AxisBlock, SpindleBlock
+from cnc_ptp.protocol.unit import UPSTREAM_LOST
 from cnc_ptp.recording.reader import read_recording
 from cnc_ptp.wire.block_codec import encode_block
 from cnc_ptp.wire.stamps import Stamps
@@ -50,13 +51,15 @@ class Bus:
         for node in (self.node, self.outside):
             self.executor.add_node(node)
         self.spin_until(lambda: all(writer.get_subscription_count() for writer in self.writers.values()))
+        self.watch.longest_gap = 5.0  # a slow computer is another matter
         self.watch.restart()
 
-    def axis(self, unit, first_cycle, position, velocity, master=""):
+    def axis(self, unit, first_cycle, position, velocity, master="", error=0):
         block = AxisBlock(first_cycle, 10, *(FLOATS for _ in range(15)), *(INTEGERS for _ in range(3)))
         block.actual_position = [position - velocity * 1e-3 * (9 - n) for n in range(10)]
         block.set_velocity = block.actual_velocity = [velocity] * 10
         block.master = master
+        block.error_id = [error] * 10
         self.write(unit, block)
 
     def spindle(self, speed, gear=1):
@@ -119,6 +122,27 @@ def test_a_silent_axis_brakes_from_its_newest_block(bus):
         ("deceleration", "mm/s²"),
         ("place", "mm"),
     }
+
+
+@pytest.mark.parametrize("bus", [(PTP, "x", "y", "z")], indirect=True)
+def test_a_clock_that_was_held_up_knows_no_drive_until_it_hears_of_its_unit_again(bus):
+    """y has stopped without the clock, x says nothing any more, z lives on and dies later."""
+    bus.watch.longest_gap = 0.2
+    for unit in "xyz":
+        bus.axis(unit, 0, 1.0, 50.0)
+    bus.spin_until(lambda: not bus.look() and bus.watch._newest.keys() == {"x", "y", "z"})
+    time.sleep(0.5)
+    assert not bus.look()
+    bus.watch.longest_gap = 5.0
+    heard_from = time.monotonic() + 0.25
+    bus.spin_until(lambda: not bus.look() and time.monotonic() > heard_from)
+    bus.axis("y", 500, 2.0, 10.0, error=UPSTREAM_LOST)
+    bus.axis("z", 500, 3.0, 50.0)
+    stop = bus.stop_of("z")
+    assert stop.first_cycle == 510
+    silent_until = time.monotonic() + 0.5
+    bus.spin_until(lambda: bus.look() and time.monotonic() > silent_until)
+    assert [each.unit for each in bus.stops] == ["z"]
 
 
 @pytest.mark.parametrize("bus", [(PTP, "x", "y")], indirect=True)
