@@ -16,6 +16,7 @@ from cnc_ptp.protocol.blocks import (
     HandshakeRequest,
 )
 from cnc_ptp.web.faces.alarms import Alarms, event_fields
+from cnc_ptp.web.faces.distances import DistancesToGo
 from cnc_ptp.web.faces.face import Face, Past, State
 from cnc_ptp.web.faces.offset_table import OffsetTable
 from cnc_ptp.web.faces.program_watch import ProgramWatch
@@ -49,6 +50,7 @@ class View:
         channels = [unit for unit, kind in face.kinds.items() if kind == "channel"]
         self.tables = {unit: OffsetTable(face.sets[unit], face.sets) for unit in channels}
         self.targets = Targets([unit for unit, kind in face.kinds.items() if kind == "axis"])
+        self._distances = DistancesToGo()
         self.offsets: dict[str, dict[str, Any]] = {}
         """Channel -> what lies between programmed and machine positions."""
         self._switches = Switches()
@@ -78,12 +80,19 @@ class View:
             self._tell_answered(record, news.blocks)
         for unit, block in news.blocks:
             if isinstance(block, ChannelBlock):
+                self._distances.take_block(unit, block)
                 self._tell_offsets(unit, block)
                 self.drop_handshakes(unit, block)
         if news.diagnostics:
             self.to_all({"type": "diagnostics", "nodes": [*news.diagnostics]})
+        distances = self._distances.fields(units, self._state, self.targets.positions)
         state = {
-            unit: {**fields, **self._switches.fields.get(unit, {}), **self.targets.fields(unit)}
+            unit: {
+                **fields,
+                **self._switches.fields.get(unit, {}),
+                **self.targets.fields(unit),
+                **distances.get(unit, {}),
+            }
             for unit, fields in units.items()
         }
         changes = difference(state, self._state)

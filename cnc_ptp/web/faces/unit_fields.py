@@ -91,14 +91,17 @@ def channel_fields(block: ChannelBlock) -> dict[str, Any]:
 def path_fields(block: ChannelBlock) -> dict[str, dict[str, Any]]:
     """Axis of a channel -> work position (as programs name it) and distance to go in the active block.
 
-    The distance of an axis is its part of the path's: exact on a line, along the tangent on an arc; 0 at a standstill.
+    The distance of an axis is its part of the path's: exact on a line, along the tangent on an arc. None while the path
+    stands within a block: it does not say where it leads (distances.py).
     """
     axes: dict[str, dict[str, Any]] = {}
     velocity, distance = block.path_velocity[-1], block.distance_to_go[-1]
     for index, (axis, position) in enumerate(zip(block.axes, block.programmed_position, strict=False)):
-        last = (index + 1) * block.count - 1
-        part = block.set_velocity[last] / velocity if velocity > 0.0 else 0.0
-        axes[axis] = {"work_position": shown(position), "distance_to_go": shown(part * distance)}
+        left: float | None = 0.0
+        if distance > 0.0:
+            speed = block.set_velocity[(index + 1) * block.count - 1]
+            left = shown(speed / velocity * distance) if velocity > 0.0 else None
+        axes[axis] = {"work_position": shown(position), "distance_to_go": left}
     return axes
 
 

@@ -41,7 +41,7 @@ function row(axis) {
       say(big, fixed((wantsActual ? state.actual_position : state.set_position) + shift, DECIMALS));
       say(set, fixed(state.set_position, DECIMALS));
       say(actual, fixed(state.actual_position, DECIMALS));
-      say(rest, fixed(state.distance_to_go ?? 0, DECIMALS));
+      say(rest, fixed(state.distance_to_go === undefined ? 0 : state.distance_to_go, DECIMALS));
       const mark = state.state === "ErrorStop" ? "bad" : state.state === "Disabled" ? "off" : "";
       if (element.dataset.mark !== mark) element.dataset.mark = mark;
       element.title = state.state || "";

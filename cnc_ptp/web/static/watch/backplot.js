@@ -116,12 +116,11 @@ export function backplot(app) {
   return { element, end: () => ends.forEach((end) => end()) };
 }
 
-/** X, Y, Z of the tool as programs name them; of a lathe X is across. */
+/** X, Y, Z of the tool where the path is drawn: in machine coordinates, without offsets; of a lathe X is across. */
 function placesOf(store) {
   const axes = store.unit(store.channel)?.axes || store.of("axis").map(({ name }) => ({ unit: name, name: name.toUpperCase() }));
   return ["X", "Y", "Z"].map((name) => {
     const axis = axes.find((one) => one.name === name);
-    const state = axis ? store.state(axis.unit) : {};
-    return state.work_position ?? state.set_position ?? 0;
+    return axis ? store.state(axis.unit).set_position ?? 0 : 0;
   });
 }

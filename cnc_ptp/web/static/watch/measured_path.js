@@ -3,7 +3,7 @@ import { readRecorded } from "../scope/samples.js";
 
 const POINTS = 50000;
 
-/** x, y, z of actual positions, as programs name them at present; a missing axis is 0. Rejects with a Refusal. */
+/** x, y, z of actual positions in machine coordinates, as the path is drawn; a missing axis is 0. Rejects with a Refusal. */
 export async function measuredPath({ store, connection }) {
   const axes = store.unit(store.channel)?.axes || [];
   const units = ["X", "Y", "Z"].map((name) => axes.find((axis) => axis.name === name)?.unit);
@@ -16,9 +16,7 @@ export async function measuredPath({ store, connection }) {
   units.forEach((unit, k) => {
     if (!unit) return;
     const column = columns[known.indexOf(unit)];
-    const { work_position: work, set_position: set } = store.state(unit);
-    const shift = typeof work === "number" && typeof set === "number" ? work - set : 0;
-    for (let i = 0; i < count; i++) positions[3 * i + k] = column[i] + shift;
+    for (let i = 0; i < count; i++) positions[3 * i + k] = column[i];
   });
   return positions;
 }
