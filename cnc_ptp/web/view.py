@@ -17,7 +17,7 @@ from cnc_ptp.protocol.blocks import (
 )
 from cnc_ptp.web.faces.alarms import Alarms, event_fields
 from cnc_ptp.web.faces.distances import DistancesToGo
-from cnc_ptp.web.faces.face import Face, Past, State
+from cnc_ptp.web.faces.face import WRITE_PARAMETER, Face, Past, State
 from cnc_ptp.web.faces.offset_table import OffsetTable
 from cnc_ptp.web.faces.program_watch import ProgramWatch
 from cnc_ptp.web.faces.switches import Switches
@@ -131,10 +131,18 @@ class View:
         self._switches.take_record(record)
         self.targets.take_record(record, blocks, self._state)
         self.programs.take_record(record)
+        if record.command == WRITE_PARAMETER and record.accepted:
+            self._tell_parameters(record.target)
         if record.target in self.tables:
             self.tables[record.target].take_record(record)
         if record.command == "acknowledge" and record.accepted:
             self._end_handshake(json.loads(record.arguments_json).get("id"))
+
+    def _tell_parameters(self, unit: str) -> None:
+        """A parameter of it was written: pages read them again; limits that follow come with it."""
+        described = [each for each in self.face.machine()["units"] if each["name"] == unit]
+        for each in described:
+            self.to_all({"type": "parameters", "unit": unit, "described": each})
 
     def _end_handshake(self, number: int) -> None:
         if self.handshakes.pop(number, None) is not None:

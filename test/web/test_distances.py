@@ -24,7 +24,9 @@ def test_an_axis_in_feed_hold_keeps_its_part_of_the_distance(tmp_path):
             assert (await page.command("channel", "start"))["ok"]
             await page.state_of("x", lambda x: x.get("set_position", 0.0) > 2.0)
             assert (await page.command("channel", "feed_hold", enabled=True))["ok"]
-            channel = await page.state_of("channel", lambda each: each.get("state") == "hold" and each.get("feed") == 0.0)
+            channel = await page.state_of(
+                "channel", lambda each: each.get("state") == "hold" and each.get("feed") == 0.0
+            )
             view = here.hub._shared
             states = view._state
             assert 0.0 < channel["distance_to_go"] < 48.0

@@ -248,6 +248,17 @@ def test_the_axis_page_shows_and_writes_parameters(mill):
     row.locator("input").fill("4000")
     row.locator("button").click()
     page.wait_for_selector(".notice >> text=P-AXIS-00099 = 4000")
+    page.fill("[type=search]", "P-AXIS-00255")
+    feedforward = page.locator(".parameters tbody tr").first
+    feedforward.locator("select").select_option("1")
+    feedforward.locator("button").click()
+    page.wait_for_selector(".notice >> text=P-AXIS-00255 = 1")
+    page.click("[role=tab]:text-is('Online')")  # what is read again has them
+    page.click("[role=tab]:text-is('Parameters')")
+    page.fill("[type=search]", "P-AXIS-00099")
+    until(page, "document.querySelector('.parameters input')?.value === '4000'")
+    page.fill("[type=search]", "P-AXIS-00255")
+    until(page, "document.querySelector('.parameters select')?.value === '1'")
 
 
 def test_each_function_of_an_axis_has_its_form(mill):

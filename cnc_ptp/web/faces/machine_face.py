@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import json
 from abc import abstractmethod
 from collections.abc import Mapping
 from math import inf
@@ -16,13 +17,14 @@ from cnc_ptp.client.link import Link, Reply
 from cnc_ptp.client.offline_link import OfflineLink
 from cnc_ptp.errors import CncError
 from cnc_ptp.nodes.bridge.jog_topics import JogTopics
+from cnc_ptp.parameters.check.runtime_change import changed
 from cnc_ptp.parameters.view.authority import OF_PAGES, closed_units
 from cnc_ptp.protocol.authority import closed_to, require_axes_open
-from cnc_ptp.protocol.blocks import Command, Event, Severity
+from cnc_ptp.protocol.blocks import Command, CommandRecord, Event, Severity
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.web.access.rights import is_stop
 from cnc_ptp.web.faces.description import describe_commands, describe_units
-from cnc_ptp.web.faces.face import Face, News, State
+from cnc_ptp.web.faces.face import WRITE_PARAMETER, Face, News, State
 from cnc_ptp.web.faces.scope import signals_of
 from cnc_ptp.web.faces.unit_fields import unit_states
 from cnc_ptp.web.numbers import STOPPED
@@ -46,7 +48,8 @@ class MachineFace(Face):
         self._stops = dict.fromkeys(self.kinds, 0)
         """How often a unit was stopped."""
         self._turns = {unit: asyncio.Lock() for unit in self.kinds}
-        self.sets = {unit: self._link.parameters_of(unit) for unit, kind in self.kinds.items() if kind != "plc"}
+        self._sets = {unit: self._link.parameters_of(unit) for unit, kind in self.kinds.items() if kind != "plc"}
+        self.sets = self._sets
         self._closed = closed_units(self._link.parameters_of(PLC), self.kinds)
         self._units = describe_units(self.kinds, self.sets, self.cycle_time)
 
@@ -77,7 +80,19 @@ class MachineFace(Face):
     def news(self) -> News:
         requests = [*self._link.seen.known_requests()] if "plc" in self._link.seen.blocks else []
         blocks = [(unit, block) for unit, mailbox in self._blocks.items() for block in taken(mailbox.items)]
-        return News(taken(self._events.items), requests, blocks, taken(self._records.items))
+        records = taken(self._records.items)
+        for record in records:
+            self._take_parameter(record)
+        return News(taken(self._events.items), requests, blocks, records)
+
+    def _take_parameter(self, record: CommandRecord) -> None:
+        """A parameter of an axis that was written, by whomever."""
+        unit = record.target
+        if record.command != WRITE_PARAMETER or not record.accepted or unit not in self.sets:
+            return
+        given = json.loads(record.arguments_json)
+        self._sets[unit] = changed(self._sets[unit], given["parameter"], given["value"]).own
+        self._units = describe_units(self.kinds, self.sets, self.cycle_time)
 
     async def ask(self, unit: str, command: str, arguments: Mapping[str, Any], *, user: str) -> Reply:
         if unit not in self.kinds:

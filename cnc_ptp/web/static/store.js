@@ -147,6 +147,9 @@ const HANDLERS = {
   offsets(store, message) {
     store.offsets[message.channel] = message;
   },
+  parameters(store, message) {
+    Object.assign(store.unit(message.unit) || {}, message.described);
+  },
   diagnostics(store, message) {
     for (const node of message.nodes || []) store.nodes.set(node.name, { ...store.nodes.get(node.name), ...node });
   },

@@ -13,5 +13,5 @@ export function driveView(app, unit) {
   const write = () => value.value !== "" && app.command(unit.name, "write_drive_parameter", { idn: idn.value, value: Number(value.value) });
   const channel = panel("Service channel (SERCOS)", h("fieldset", { class: "commands", dataset: { role: "commissioner" } }, h("div", { class: "row end" }, field("IDN", idn), button("Read", read), field("Value", value), button("Write", write))), shown);
   const simulation = browser(app, unit, (row) => row.id.startsWith("P-SIM"), "Simulated drive");
-  return { element: h("div", { class: "stack" }, simulation.element, channel) };
+  return { element: h("div", { class: "stack" }, simulation.element, channel), end: simulation.end };
 }

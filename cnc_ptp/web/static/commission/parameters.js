@@ -40,7 +40,7 @@ export function browser(app, unit, wanted, title) {
   find.addEventListener("input", show);
   change.addEventListener("change", show);
   read();
-  return { element };
+  return { element, end: app.store.on("parameters", (message) => message.unit === unit.name && read()) };
 }
 
 function line(app, unit, row) {
@@ -54,15 +54,17 @@ function line(app, unit, row) {
 
 /** An input where the value may be changed while the machine runs. */
 function value(app, unit, row, known) {
-  const isChangeable = (row.change === "now" || row.change === "standstill") && unit.kind === "axis" && typeof row.value === "number";
+  const isChangeable = (row.change === "now" || row.change === "standstill") && unit.kind === "axis" && ["number", "boolean"].includes(typeof row.value);
   if (!isChangeable) return known(row.value);
-  const input = h("input", { type: "number", step: "any", value: row.value, min: row.min ?? null, max: row.max ?? null, "aria-label": `${row.id} ${row.name}` });
+  const isSwitch = typeof row.value === "boolean";
+  const label = `${row.id} ${row.name}`;
+  const input = isSwitch ? select([["1", "true"], ["0", "false"]], { "aria-label": label }) : h("input", { type: "number", step: "any", value: row.value, min: row.min ?? null, max: row.max ?? null, "aria-label": label });
+  if (isSwitch) input.value = String(Number(row.value));
   const write = async () => {
     if (input.value === "") return;
     const answer = await app.command(unit.name, "write_parameter", { parameter: row.name || row.id, value: Number(input.value) });
-    if (!answer) input.value = row.value;
+    if (!answer) input.value = String(Number(row.value));
     else {
-      row.value = Number(input.value);
       app.notices.show("info", `${row.id} = ${input.value} until the end of the run.`);
     }
   };

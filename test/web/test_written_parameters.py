@@ -1,0 +1,43 @@
+"""Pages see parameters as they are now, whoever has written them."""
+
+import asyncio
+
+from web_support import ROOT, site
+
+PTP = str(ROOT / "config" / "ptp.yaml")
+SOFT_LIMIT = "P-AXIS-00178"
+
+
+def test_a_parameter_that_was_written_is_read_and_its_limit_is_told():
+    async def story():
+        async with site(PTP) as here:
+            page, other = await here.page(), await here.page(commands=False)
+            before = await parameter(here, SOFT_LIMIT)
+            assert (await page.command("x", "write_parameter", parameter=SOFT_LIMIT, value=1500000))["ok"]
+            for each in (page, other):
+                told = await each.wait_for("parameters")
+                assert told["unit"] == told["described"]["name"] == "x"
+                assert told["described"]["limits"]["positions"][1] == 150.0
+            after = await parameter(here, SOFT_LIMIT)
+            assert before["value"] != after["value"] == 1500000
+            late = await here.page(commands=False)
+            (x,) = [unit for unit in late.hello["machine"]["units"] if unit["name"] == "x"]
+            assert x["limits"]["positions"][1] == 150.0
+
+    asyncio.run(story())
+
+
+def test_a_parameter_that_was_refused_stays():
+    async def story():
+        async with site() as here:
+            page = await here.page()
+            before = await parameter(here, "P-AXIS-00099")
+            assert (await page.command("x", "write_parameter", parameter="P-AXIS-00099.0", value=-5))["number"] == 23096
+            assert await parameter(here, "P-AXIS-00099") == before
+
+    asyncio.run(story())
+
+
+async def parameter(here, number):
+    listed = await (await here.client.get("/api/parameters", params={"unit": "x"})).json()
+    return next(row for row in listed["parameters"] if row["id"].startswith(number))
