@@ -75,9 +75,13 @@ class PageMessages:
             raise unknown_unit(unit, face.kinds)
         what = f"{kind} {unit}: {command}"
         require_page_command(kind, unit, command, arguments)
-        require_role(what, self._session.user, self._session.role, role_for(kind, command))
-        if not is_stop(kind, command, arguments):
-            self._hub.right.require(self._session, what)
+        try:
+            require_role(what, self._session.user, self._session.role, role_for(kind, command))
+            if not is_stop(kind, command, arguments):
+                self._hub.right.require(self._session, what)
+        except CncError as error:
+            self._hub.note(f"{self._session.user}: {what}, P-ERR-{error.number}")
+            raise
 
     async def _ask(self, message: Message, unit: str, command: str, arguments: dict[str, Any]) -> Message:
         reply = await self._hub.require_face().ask(unit, command, arguments, user=self._session.user)

@@ -29,6 +29,8 @@ def test_an_axis_is_identified_and_accepted(machine, tmp_path):
             assert result["ok"] and "frict_comp" in result["values"], result
             accepted = await page.ask("accept", task=answer["task"], file="identified.yaml")
             assert accepted["file"] == str(tmp_path / "identified.yaml")
+            text = f"web: result of task {answer['task']} accepted, machine file {accepted['file']} written"
+            assert await page.wait_for("event", lambda event: event["text"] == text)
             assert read_machine(accepted["file"]).axes["x"].name == "x"
             again = await page.ask("accept", task=answer["task"], file="identified.yaml")
             text = "identified.yaml is there already; nothing was written; give another name"
@@ -61,6 +63,9 @@ def test_a_task_is_cancelled(machine):
             progress = await page.wait_for("progress")
             assert progress["text"] == "identify dynamics x runs"
             assert (await page.ask("cancel_task", task=task))["ok"]
+            for what in (f"task {task} begun: identify dynamics x ", f"task {task} cancelled"):
+                told = await page.wait_for("event", lambda event, what=what: what in event["text"])
+                assert told["text"].startswith("web: ")
             result = await page.wait_for("result")
             text = f"task {task} was cancelled; nothing was found"
             assert (result["ok"], result["number"], result["text"]) == (False, 26256, text)

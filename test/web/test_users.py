@@ -52,9 +52,10 @@ def test_roles(users):
         assert refused["number"] == 26235
         assert (await otto.command("x", "move_absolute", target=1))["ok"]
         assert ("otto", "x", "move_absolute") in here.hub.face.users
-        events = [await otto.wait_for("event", lambda event: event["source"] == "web") for _ in range(2)]
+        events = [await otto.wait_for("event", lambda event: event["source"] == "web") for _ in range(3)]
         assert [event["text"] for event in events] == [
             f"otto (page {otto.hello['page']}): take_command",
+            "otto: axis x: write_parameter, P-ERR-26235",
             "otto: axis x: move_absolute, carried out",
         ]
 

@@ -34,19 +34,26 @@ class CommissioningMessages:
 
     def _begin(self, message: Message, words: list[str]) -> None:
         number, task = self._tasks.begin(words, self._session.hub.to_all)
+        self._note(f"task {number} begun: {' '.join(map(str, words))}")
         self._session.hub.keep(task)
         self._session.send(answer(message, task=number))
 
     def _cancel(self, message: Message) -> None:
         self._require_role(message)
-        self._tasks.cancel(field(message, "task", "integer"))
+        number = field(message, "task", "integer")
+        self._tasks.cancel(number)
+        self._note(f"task {number} cancelled")
         self._session.send(answer(message))
 
     async def _accept(self, message: Message) -> Message:
         self._require_role(message)
         number, name = field(message, "task", "integer"), field(message, "file", "text")
         file = await asyncio.to_thread(self._tasks.accept, number, name)
+        self._note(f"result of task {number} accepted, machine file {file} written")
         return answer(message, file=file)
+
+    def _note(self, text: str) -> None:
+        self._session.hub.note(f"{self._session.user}: {text}")
 
     def _require_role(self, message: Message) -> None:
         require_role(message["type"], self._session.user, self._session.role, "commissioner")
