@@ -3,7 +3,7 @@
 - a refusal that says that nothing was changed leaves the state of all units as it was, bit by bit; after others
   it is in ErrorStop,
 - setpoints are finite, ErrorStop and an error number go together, without power there is no job,
-- a path has one owner, and nobody is led by nobody.
+- a path has one owner, nobody is led by nobody, and an axis in ErrorStop brakes, or follows its master.
 """
 
 from __future__ import annotations
@@ -99,8 +99,14 @@ class CheckedMachine:
         self.require(len(taken) == len(set(taken)), f"axes on two paths: {taken}")
         for name, output in outputs.items():
             block = output.block
-            if isinstance(block, AxisBlock) and block.state[-1] == S.SYNCHRONIZED_MOTION:
+            if not isinstance(block, AxisBlock):
+                continue
+            if block.state[-1] == S.SYNCHRONIZED_MOTION:
                 self.require(bool(block.master) or name in taken, f"{name} is led by nobody")
+            if {*block.state} == {S.ERROR_STOP} and block.set_velocity[0] and len({*block.set_velocity}) == 1:
+                master = outputs[block.master].block if block.master else None
+                led = master is not None and any(master.set_velocity)
+                self.require(led, f"{name} does not brake in ErrorStop, at {block.set_velocity[0]:g}")
 
 
 def setpoints(block: AxisBlock | SpindleBlock) -> list[float]:
