@@ -176,13 +176,13 @@ def check_recording(row: Row, case: Case, recording: Path, written: int) -> None
         row.problems.append(f"the recording is not readable: {error}")
         return
     row.cycles = recorded.last_cycle + 1
-    cut = fault.node == "recorder" and fault.signal == KILL
+    cut = fault.node == "recorder" and fault.signal in (KILL, HOLD)
     unsupervised = fault.node == SUPERVISOR and fault.signal == KILL
     if not recorded.complete and not cut and not unsupervised:
         row.problems.append(f"the recording is not complete: {recorded.missing}")
     if row.cycles < written - FLUSHED - machine.watchdog_ms * 1000 // machine.cycle_time_us:
         row.problems.append(f"the recording ends at cycle {row.cycles}, the fault came at {written}")
-    of_recorder = fault.node == "recorder" and fault.signal != HOLD
+    of_recorder = fault.node == "recorder" and (fault.signal != HOLD or not recorded.complete)
     row.problems += [*motion.problems(recorded, machine, ended=not of_recorder), *motion.violations(recording)]
     row.own_stops = {stop.unit: len(stop.actual_position) for stop in recorded.drive_stops}
     check_links(row, case, recorded)

@@ -20,7 +20,7 @@ from cnc_ptp.control.drives.setpoint_watchdog import (
     own_stop,
     spindle_stop,
 )
-from cnc_ptp.errors import Value
+from cnc_ptp.errors import CncError, Value
 from cnc_ptp.motion.profile import Profile
 from cnc_ptp.nodes import convert
 from cnc_ptp.nodes.events import EventPublisher
@@ -41,6 +41,7 @@ LAST_PATIENCE = 1.0
 """Seconds of silence, at the end of a run, after which no more setpoints come, however long the watchdog time is."""
 DRIVE_BRAKED = 26265
 DRIVE_STOOD = 26266
+CLOCK_LATE = 26268
 
 
 class LastValues(NamedTuple):
@@ -62,7 +63,8 @@ class DriveWatch:
     blocks, so that all of them come to that cycle when the watchdog time has passed.
 
     A clock that was itself held up for longer than the watchdog time does not know what units have done without it: the
-    drive of one that is not heard for so long afterwards, or that has stopped because of it, is left to its unit.
+    drive of one that is not heard for so long afterwards is left to its unit. Where units have stopped without it, the
+    clock ends.
     """
 
     def __init__(self, node: PollingNode, machine: MachineParameters) -> None:
@@ -77,7 +79,7 @@ class DriveWatch:
         self._watchdog = Watchdog(self._units, seconds=self._seconds)
         self._cycle_time = machine.cycle_time_us * 1e-6
         self._due = self._stopped_at = self._resumed_at = 0.0
-        self._looked = time.monotonic()
+        self._looked, self._held_for = time.monotonic(), 0.0
         self.longest_gap = self._seconds
         """Seconds between two looks after which this process was held up."""
         self._known = {*self._units}
@@ -110,15 +112,24 @@ class DriveWatch:
             return
         self._due = now + self._seconds / 4.0
         if now - self._looked > self.longest_gap:
-            self._resumed_at = now
+            self._resumed_at, self._held_for = now, now - self._looked
             self._known.clear()
         self._looked = now
         self._node.take_inputs()
+        self._require_own_ticks()
         if self._watchdog.was_suspended():
             self._watchdog.restart()
             return
         for unit in self._watchdog.silent(self._judged(), begun=begun):
             self._stop(unit, stamps)
+
+    def _require_own_ticks(self) -> None:
+        """Raises CncError 26268 when this process was held up, and units have stopped without it."""
+        alone = [unit for unit in self._units if self._stops_alone(unit)]
+        if alone:
+            held = f"clock: it was held up for {self._held_for:.1f} s"
+            reason = f"{held}, and units have stopped without it: {', '.join(alone)}"
+            raise CncError(CLOCK_LATE, reason, "the clock ends, and the run with it")
 
     def _judged(self) -> list[str]:
         """Units whose drives brake when they fall silent."""

@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from functools import partial, wraps
+from math import inf
 from typing import Any
 
 import click
@@ -61,6 +62,8 @@ from cnc_ptp.wire.unreadable import UNREADABLE_MESSAGE
 Sink = Recording | OnDemand
 
 BLOCKS_MISSING = 26114
+STALE = 0.2
+"""Seconds in which a recorder that was held up gets what has waited for it."""
 QUIET = 0.2
 """Seconds without a message after which a recorder that is to end has seen everything."""
 LOOK_PERIOD = 0.05
@@ -114,7 +117,10 @@ class RecorderNode(PollingNode):
         self._next_cycle = dict.fromkeys(self._units, 0)
         self._stopped: dict[str, int] = {}
         """The first cycle of units whose drives have stopped on their own."""
-        self._heard = time.monotonic()
+        self._heard = self._looked = self._ticked_at = time.monotonic()
+        self._watchdog_time = machine.watchdog_ms / 1000.0
+        self._held_for, self._resumed_at = 0.0, -inf
+        """How long this process was held up last, and when it went on."""
         self._report_publisher = self.create_publisher(msg.BlockReport, REPORT, BLOCKS)
         self._event_publisher = EventPublisher(self)
         self.failure: CncError | None = None
@@ -171,9 +177,18 @@ class RecorderNode(PollingNode):
         self._event_publisher.publish(convert.event_to_message(event, stamp))
 
     def destroy_node(self) -> None:
+        self._note_cut()
         for sink in self._sinks:
             self._guarded(sink.close)()
         super().destroy_node()
+
+    def _note_cut(self) -> None:
+        """Who is held up while the run ends does not get what came last: the recording says so."""
+        if self._recording is not None and self._ticked_at < self._resumed_at + STALE:
+            end = max(self._next_cycle.values())
+            text = f"the recorder was held up for {self._held_for:.1f} s, and the run has ended meanwhile"
+            self._guarded(self._recording.note_missing)(f"{text}; what came after cycle {end - 1} is missing")
+            self._resumed_at = -inf
 
     @property
     def settled(self) -> bool:
@@ -192,7 +207,7 @@ class RecorderNode(PollingNode):
         self._report_publisher.publish(msg.BlockReport(source=RECORDER, first_cycle=first_cycle))
 
     def _on_tick(self, message: Tick) -> None:
-        self._heard = time.monotonic()
+        self._heard = self._ticked_at = time.monotonic()
         self._tick_ns = message.stamp_ns
         if self._recording is None:
             start_ns = self._tick_ns - message.first_cycle * self._cycle_ns
@@ -309,6 +324,10 @@ class RecorderNode(PollingNode):
 
     def _look(self) -> None:
         """Takes the ticks and blocks that have come, and writes when it is time."""
+        now = time.monotonic()
+        if now - self._looked > self._watchdog_time and self._recording is not None and self._handover is None:
+            self._held_for, self._resumed_at = now - self._looked, now
+        self._looked = now
         self.take_polled()
         if self._free_run and self._handover is None:
             self._report(self._last_tick)

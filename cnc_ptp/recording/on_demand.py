@@ -177,6 +177,11 @@ class OnDemand:
             self.current.flush_if_due(now)
         self.carry_out(now)
 
+    def note_missing(self, what: str) -> None:
+        """Of the present recording."""
+        if self.current is not None:
+            self.current.note_missing(what)
+
     def close(self) -> None:
         """Carries out what was asked for, with what is there, and closes the present recording."""
         self.carry_out(math.inf)

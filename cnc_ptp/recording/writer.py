@@ -19,7 +19,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import ChannelBlock, CommandRecord, CycleBlock, CycleTick, Event, PlcBlock
 from cnc_ptp.recording.bag import QOS, TYPE_HASH, write_beside
 from cnc_ptp.recording.blocks import StateKind, block_rows, fill_states, kind_of, kinds_in
-from cnc_ptp.recording.mcap_file import HEAD_SIZE, METADATA, McapFile
+from cnc_ptp.recording.mcap_file import HEAD_SIZE, METADATA, MISSING, McapFile
 from cnc_ptp.recording.origin import FORMAT, FORMAT_VERSION, PART
 from cnc_ptp.recording.parts import PartsFolder
 from cnc_ptp.recording.qos import offered, profiles_text
@@ -295,6 +295,10 @@ class Recording:
         self._require_open("a flush")
         self._close_chunk()
         self._file.finish_chunks()
+
+    def note_missing(self, what: str) -> None:
+        """The recording says that it is not complete."""
+        self._file.metadata(METADATA, {MISSING: what})
 
     def close(self) -> None:
         """Writes the rest and the summary. A second call has no effect."""

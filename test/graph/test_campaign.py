@@ -13,6 +13,7 @@ FAULTS = (
     Fault("ptp", "c", TERM, 0.0, 1.234),
     Fault("coupled", "x", KILL, 0.0, 2.123),
     Fault("gantry", "y", HOLD, 0.6, 1.789),
+    Fault("thread", "clock", HOLD, 1.5, 2.5),
     Fault("tapping", "supervisor", KILL, 0.0, 2.5),
 )
 """Other kinds are in test_kill.py, test_drive_watch.py and test_slaves.py."""

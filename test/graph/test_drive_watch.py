@@ -12,6 +12,7 @@ from graph_support import MILL, PTP, Running, kill, one_axis_machine, verified, 
 from spin_support import spin_until
 
 from cnc_ptp import msg
+from cnc_ptp.errors import CncError
 from cnc_ptp.nodes import drive_watch, process
 from cnc_ptp.nodes.axis import AxisNode
 from cnc_ptp.nodes.clock import ClockNode
@@ -126,7 +127,7 @@ def test_a_silent_axis_brakes_from_its_newest_block(bus):
 
 @pytest.mark.parametrize("bus", [(PTP, "x", "y", "z")], indirect=True)
 def test_a_clock_that_was_held_up_knows_no_drive_until_it_hears_of_its_unit_again(bus):
-    """y has stopped without the clock, x says nothing any more, z lives on and dies later."""
+    """x says nothing any more, y and z live on, z dies later; then it turns out that y has stopped without the clock."""
     bus.watch.longest_gap = 0.2
     for unit in "xyz":
         bus.axis(unit, 0, 1.0, 50.0)
@@ -136,13 +137,19 @@ def test_a_clock_that_was_held_up_knows_no_drive_until_it_hears_of_its_unit_agai
     bus.watch.longest_gap = 5.0
     heard_from = time.monotonic() + 0.25
     bus.spin_until(lambda: not bus.look() and time.monotonic() > heard_from)
-    bus.axis("y", 500, 2.0, 10.0, error=UPSTREAM_LOST)
     bus.axis("z", 500, 3.0, 50.0)
     stop = bus.stop_of("z")
     assert stop.first_cycle == 510
     silent_until = time.monotonic() + 0.5
     bus.spin_until(lambda: bus.look() and time.monotonic() > silent_until)
     assert [each.unit for each in bus.stops] == ["z"]
+    bus.axis("y", 500, 2.0, 10.0, error=UPSTREAM_LOST)
+    with pytest.raises(CncError) as refused:
+        bus.spin_until(lambda: bus.look() and False)
+    held = f"P-ERR-26268 clock: it was held up for {bus.watch._held_for:.1f} s"
+    text = f"{held}, and units have stopped without it: y; the clock ends, and the run with it"
+    assert str(refused.value) == text
+    assert 0.4 < bus.watch._held_for < 5.0
 
 
 @pytest.mark.parametrize("bus", [(PTP, "x", "y")], indirect=True)

@@ -1,5 +1,6 @@
 """Faults of starting and recording that a good run never meets, with their exact texts."""
 
+import time
 from functools import partial
 
 import pytest
@@ -112,6 +113,30 @@ def test_blocks_that_are_not_recorded_are_told(around, tmp_path):
             "recorder: blocks of 'plc' from cycle 10 to 29 are missing in the recording",
         )
     ]
+
+
+@pytest.mark.parametrize("goes_on", [False, True])
+def test_a_recorder_that_is_held_up_until_the_run_has_ended_says_so(around, tmp_path, goes_on):
+    """`goes_on`: there are ticks after that, too, and nothing is missing."""
+    path = tmp_path / "a.mcap"
+    outside, recorder, spin_until = around(lambda: RecorderNode(read_machine(str(PTP)), str(path), PTP.read_text()))
+    spin_until(lambda: outside.ticks.get_subscription_count() and outside.plc.get_subscription_count())
+    outside.ticks.publish(msg.CycleTick(first_cycle=0, count=10))
+    outside.plc_block(0)
+    spin_until(lambda: recorder._next_cycle["plc"] == 10)
+    time.sleep(0.5)
+    spin_until(lambda: recorder._held_for > 0.4)
+    if goes_on:
+        later = time.monotonic() + 0.3
+        spin_until(lambda: time.monotonic() > later)
+        outside.ticks.publish(msg.CycleTick(first_cycle=10, count=10))
+        outside.plc_block(10)
+        spin_until(lambda: recorder._last_tick == 10 and recorder._next_cycle["plc"] == 20)
+    recorder.destroy_node()
+    held = f"{recorder._held_for:.1f}"
+    text = f"the recorder was held up for {held} s, and the run has ended meanwhile; what came after cycle 9 is missing"
+    recorded = read_recording(path)
+    assert (recorded.complete, recorded.missing) == ((True, "") if goes_on else (False, text))
 
 
 @pytest.mark.motion_unchecked("random numbers")
