@@ -120,7 +120,7 @@ class RecorderNode(PollingNode):
         self._heard = self._looked = self._ticked_at = time.monotonic()
         self._watchdog_time = machine.watchdog_ms / 1000.0
         self._held_for, self._resumed_at = 0.0, -inf
-        """How long this process was held up last, and when it went on."""
+        """How long this process was held up last, and when it resumed."""
         self._report_publisher = self.create_publisher(msg.BlockReport, REPORT, BLOCKS)
         self._event_publisher = EventPublisher(self)
         self.failure: CncError | None = None

@@ -322,7 +322,7 @@ def _form_of_class(cls: type) -> Form | None:
 
 
 def written(place: Place) -> str:
-    """A place as it is told."""
+    """A place in words."""
     steps: list[str] = []
     here: Any = place
     while here is not None:

@@ -12,7 +12,7 @@ from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, PlcBlock
-from cnc_ptp.recording.computed_again import is_refused_coupling
+from cnc_ptp.recording.computed_again import may_be_refused_by_plc
 
 
 def bits(bench: MachineBench) -> dict[str, list[str]]:
@@ -31,7 +31,7 @@ def replay(machine: MachineParameters, records: list[CommandRecord], blocks: int
     by_cycle: dict[int, dict[str, list[Command]]] = defaultdict(lambda: defaultdict(list))
     for record in records:
         arguments = json.loads(record.arguments_json)
-        if not is_refused_coupling(record, machine):
+        if not may_be_refused_by_plc(record, machine):
             by_cycle[record.cycle][record.target].append(Command(record.target, record.command, arguments))
     texts: dict[str, list[str]] = defaultdict(list)
     for number in range(blocks):
