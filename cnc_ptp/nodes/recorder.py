@@ -47,14 +47,15 @@ from cnc_ptp.nodes.topics import (
     recorded_topic,
 )
 from cnc_ptp.parameters import MachineParameters, machine_text, read_machine
-from cnc_ptp.protocol.blocks import CycleBlock, CycleTick, Event, Severity
+from cnc_ptp.protocol.blocks import CycleBlock, CycleTick, Event, PlcBlock, Severity
+from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.recording.mcap_file import NOT_WRITTEN
 from cnc_ptp.recording.on_demand import OnDemand, without_what
 from cnc_ptp.recording.recorder_options import FROM_THE_START, RecorderOptions
 from cnc_ptp.recording.settings import COMPRESSIONS
 from cnc_ptp.recording.trigger import Condition, make_recording
 from cnc_ptp.recording.writer import Recording
-from cnc_ptp.wire.block_codec import head_of, with_plain_header
+from cnc_ptp.wire.block_codec import codec_of, head_of, with_plain_header
 from cnc_ptp.wire.stamps import Stamps
 from cnc_ptp.wire.ticks import Tick, decode_tick
 from cnc_ptp.wire.unreadable import UNREADABLE_MESSAGE
@@ -62,8 +63,10 @@ from cnc_ptp.wire.unreadable import UNREADABLE_MESSAGE
 Sink = Recording | OnDemand
 
 BLOCKS_MISSING = 26114
+LOST_AFTER = 1.0
+"""Seconds for which a recorder must be held up to miss the end of a run; a busy computer holds it up for less."""
 STALE = 0.2
-"""Seconds in which a recorder that was held up gets what has waited for it."""
+"""Seconds in which it gets what has waited for it."""
 QUIET = 0.2
 """Seconds without a message after which a recorder that is to end has seen everything."""
 LOOK_PERIOD = 0.05
@@ -118,7 +121,8 @@ class RecorderNode(PollingNode):
         self._stopped: dict[str, int] = {}
         """The first cycle of units whose drives have stopped on their own."""
         self._heard = self._looked = self._ticked_at = time.monotonic()
-        self._watchdog_time = machine.watchdog_ms / 1000.0
+        self._last_plc = b""
+        """The newest block of the PLC: it says whether the run has ended."""
         self._held_for, self._resumed_at = 0.0, -inf
         """How long this process was held up last, and when it resumed."""
         self._report_publisher = self.create_publisher(msg.BlockReport, REPORT, BLOCKS)
@@ -184,7 +188,8 @@ class RecorderNode(PollingNode):
 
     def _note_cut(self) -> None:
         """Who is held up while the run ends does not get what came last: the recording says so."""
-        if self._recording is not None and self._ticked_at < self._resumed_at + STALE:
+        ended = bool(self._last_plc) and codec_of(PlcBlock).decode(self._last_plc).run_done
+        if self._recording is not None and self._ticked_at < self._resumed_at + STALE and not ended:
             end = max(self._next_cycle.values())
             text = f"the recorder was held up for {self._held_for:.1f} s, and the run has ended meanwhile"
             self._guarded(self._recording.note_missing)(f"{text}; what came after cycle {end - 1} is missing")
@@ -253,6 +258,8 @@ class RecorderNode(PollingNode):
             self._early.append(lambda: self._on_block(unit, block_class, data))
             return
         data = with_plain_header(block_class, data, self._recording.stamps)
+        if unit == PLC:
+            self._last_plc = data
         stamp_ns, first_cycle, count = head_of(data)
         if self._is_new(unit, stamp_ns, first_cycle, count):
             for sink in self._sinks:
@@ -325,7 +332,7 @@ class RecorderNode(PollingNode):
     def _look(self) -> None:
         """Takes the ticks and blocks that have come, and writes when it is time."""
         now = time.monotonic()
-        if now - self._looked > self._watchdog_time and self._recording is not None and self._handover is None:
+        if now - self._looked > LOST_AFTER and self._recording is not None and self._handover is None:
             self._held_for, self._resumed_at = now - self._looked, now
         self._looked = now
         self.take_polled()
