@@ -13,13 +13,17 @@ FAULTS = (
     Fault("ptp", "c", TERM, 0.0, 1.234),
     Fault("coupled", "x", KILL, 0.0, 2.123),
     Fault("gantry", "y", HOLD, 0.6, 1.789),
-    Fault("thread", "clock", HOLD, 1.5, 2.5),
     Fault("tapping", "supervisor", KILL, 0.0, 2.5),
 )
+HELD_CLOCK = Fault("thread", "clock", HOLD, 1.5, 2.5)
 """Other kinds are in test_kill.py, test_drive_watch.py and test_slaves.py."""
 
 
-@pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: f"{fault.case}-{fault.node}-{fault.signal}")
+@pytest.mark.parametrize(
+    "fault",
+    [*FAULTS, pytest.param(HELD_CLOCK, marks=pytest.mark.long)],
+    ids=lambda fault: f"{fault.case}-{fault.node}-{fault.signal}",
+)
 def test_a_fault(fault: Fault, tmp_path: Path, ros_domain: int) -> None:
     row = kills.run(fault, tmp_path, domain=ros_domain)
     assert row.problems == [] and row.outcome == "stopped"
