@@ -10,6 +10,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from functools import partial
+from math import inf
 from typing import NamedTuple
 
 from cnc_ptp import msg
@@ -39,6 +40,8 @@ FAREWELL = 0.3
 """Seconds between the last tick, or the last stop of a drive, and the end of the clock: what it has said arrives."""
 LAST_PATIENCE = 1.0
 """Seconds of silence, at the end of a run, after which no more setpoints come, however long the watchdog time is."""
+HELD_UP, PROBATION = 2.5, 5.0
+"""Watchdog times between two looks after which this process was held up; in which it finds out what units have done."""
 DRIVE_BRAKED = 26265
 DRIVE_STOOD = 26266
 CLOCK_LATE = 26268
@@ -78,9 +81,10 @@ class DriveWatch:
         self._seconds = machine.watchdog_ms / 1000.0
         self._watchdog = Watchdog(self._units, seconds=self._seconds)
         self._cycle_time = machine.cycle_time_us * 1e-6
-        self._due = self._stopped_at = self._resumed_at = 0.0
+        self._due = self._stopped_at = 0.0
+        self._resumed_at = -inf
         self._looked, self._held_for = time.monotonic(), 0.0
-        self.longest_gap = self._seconds
+        self.longest_gap = HELD_UP * self._seconds
         """Seconds between two looks after which this process was held up."""
         self._known = {*self._units}
         """Units whose newest block is here: all, as long as this process was not held up."""
@@ -97,7 +101,7 @@ class DriveWatch:
 
     def _hear(self, unit: str) -> None:
         self._watchdog.heard(unit)
-        if time.monotonic() - self._resumed_at > self._seconds:
+        if not self._on_probation():
             self._known.add(unit)
 
     def restart(self) -> None:
@@ -138,7 +142,11 @@ class DriveWatch:
     def _stops_alone(self, unit: str) -> bool:
         """While this process was held up, the unit has lost the clock."""
         block = self._newest.get(unit)
-        return self._resumed_at > 0.0 and block is not None and block.error_id[-1] == UPSTREAM_LOST
+        return self._on_probation() and block is not None and block.error_id[-1] == UPSTREAM_LOST
+
+    def _on_probation(self) -> bool:
+        """This process was held up a short time ago."""
+        return time.monotonic() - self._resumed_at < PROBATION * self._seconds
 
     def settled(self, stamps: Stamps) -> bool:
         """At the end of a run: True when no drive got a setpoint of a motion last; those of silent units brake before.
