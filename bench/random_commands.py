@@ -96,7 +96,7 @@ class CommandedMachine(CheckedMachine):
     def __init__(self, seed: int, machine: str = "", *, freed: float = FREED) -> None:
         """`machine`: file below the repository; the seed chooses one of MACHINES without it."""
         self.seed, self.random = seed, random.Random(seed)
-        self._helper, self._freed = random.Random(f"free {seed}"), freed
+        self._chance_to_free, self._freed = random.Random(f"free {seed}"), freed
         super().__init__(machine_of(machine or self.random.choice(MACHINES)))
         self.blocks: dict[str, list[Any]] = {name: [] for name in self.units}
         self.records: list[CommandRecord] = []
@@ -109,7 +109,7 @@ class CommandedMachine(CheckedMachine):
 
     def step(self) -> None:
         """A command, or time."""
-        if self._helper.random() < self._freed:
+        if self._chance_to_free.random() < self._freed:
             self.set_free()
         if self.random.random() < 0.3:
             self.run(self.random.choice((1, 1, 2, 5, 20, 60)))

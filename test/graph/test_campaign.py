@@ -15,8 +15,8 @@ FAULTS = (
     Fault("gantry", "y", HOLD, 0.6, 1.789),
     Fault("tapping", "supervisor", KILL, 0.0, 2.5),
 )
-HELD_CLOCK = Fault("thread", "clock", HOLD, 1.5, 2.5)
 """Other kinds are in test_kill.py, test_drive_watch.py and test_slaves.py."""
+HELD_CLOCK = Fault("thread", "clock", HOLD, 1.5, 2.5)
 
 
 @pytest.mark.parametrize(

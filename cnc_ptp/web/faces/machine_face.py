@@ -17,6 +17,7 @@ from cnc_ptp.client.link import Link, Reply
 from cnc_ptp.client.offline_link import OfflineLink
 from cnc_ptp.errors import CncError
 from cnc_ptp.nodes.bridge.jog_topics import JogTopics
+from cnc_ptp.parameters import ParameterSet
 from cnc_ptp.parameters.check.runtime_change import changed
 from cnc_ptp.parameters.view.authority import OF_PAGES, closed_units
 from cnc_ptp.protocol.authority import closed_to, require_axes_open
@@ -48,8 +49,9 @@ class MachineFace(Face):
         self._stops = dict.fromkeys(self.kinds, 0)
         """How often a unit was stopped."""
         self._turns = {unit: asyncio.Lock() for unit in self.kinds}
-        self._sets = {unit: self._link.parameters_of(unit) for unit, kind in self.kinds.items() if kind != "plc"}
-        self.sets = self._sets
+        self.sets: dict[str, ParameterSet] = {
+            unit: self._link.parameters_of(unit) for unit, kind in self.kinds.items() if kind != "plc"
+        }
         self._closed = closed_units(self._link.parameters_of(PLC), self.kinds)
         self._units = describe_units(self.kinds, self.sets, self.cycle_time)
 
@@ -91,7 +93,7 @@ class MachineFace(Face):
         if record.command != WRITE_PARAMETER or not record.accepted or unit not in self.sets:
             return
         given = json.loads(record.arguments_json)
-        self._sets[unit] = changed(self._sets[unit], given["parameter"], given["value"]).own
+        self.sets[unit] = changed(self.sets[unit], given["parameter"], given["value"]).own
         self._units = describe_units(self.kinds, self.sets, self.cycle_time)
 
     async def ask(self, unit: str, command: str, arguments: Mapping[str, Any], *, user: str) -> Reply:
