@@ -48,6 +48,8 @@ LIFE = 300
 """Steps of a machine."""
 POWERED = 0.9
 """Share of axes and spindles that have power from the start."""
+MOST_STOPPING = 10
+"""Seconds of machine time, 100 blocks each, in which all units must rest."""
 FREED = 0.03
 """Share of steps that set all units free first: otherwise most of a life is spent at a standstill."""
 LEFT_OUT = INTERNAL | {"write_drive_parameter", "read_drive_parameter", "write_parameter", "serve", "set_life_sign"}
@@ -227,11 +229,20 @@ class CommandedMachine(CheckedMachine):
     def finish(self) -> list[str]:
         """Comes to rest, then motion and replay are checked; all violations of the run."""
         self.offline.stop()
-        self.run(100)
+        self.come_to_rest()
         result = check_motion(inputs_of(self.machine, self.blocks, self.records))
         self.violations += [f"seed {self.seed}: {violation}" for violation in result.violations]
         self.check_replay()
         return self.violations
+
+    def come_to_rest(self) -> None:
+        """After a stop of all units; the slowest ramp of a command takes 8 s."""
+        for _ in range(MOST_STOPPING):
+            self.run(100)
+            moving = [name for name, blocks in self.blocks.items() if blocks and moves(blocks[-1])]
+            if not moving:
+                return
+        self.require(False, f"still in motion after a stop: {', '.join(moving)}")
 
     def check_replay(self) -> None:
         """The same blocks again from the recorded commands."""

@@ -11,6 +11,8 @@ from hypothesis.stateful import RuleBasedStateMachine, initialize, rule
 
 from bench import random_commands
 from bench.random_commands import MACHINES, CommandedMachine, lives, main
+from cnc_ptp.protocol.axis_states import AxisStateCode as S
+from cnc_ptp.protocol.blocks import AxisBlock
 
 EXAMPLES = int(os.environ.get("RANDOM_COMMANDS", "6"))
 STEPS = 40
@@ -75,6 +77,32 @@ def test_a_violation_is_printed_with_its_seed(
     printed = capsys.readouterr().out.splitlines()
     assert printed[0] == "seed 5 cycle 0: something"
     assert printed[1].startswith("30 steps from seed 1 in ") and printed[1].endswith("machines with a violation: 1")
+
+
+def test_a_stop_that_nobody_obeys_is_a_violation(monkeypatch: pytest.MonkeyPatch) -> None:
+    machine = moving_machine()
+    monkeypatch.setattr(random_commands, "MOST_STOPPING", 1)
+    monkeypatch.setattr(type(machine.offline), "stop", lambda _machine: None)
+    assert machine.finish()[0] == "seed 7 cycle 1300: still in motion after a stop: c"
+
+
+def test_an_axis_in_error_that_does_not_brake_is_a_violation() -> None:
+    machine = moving_machine()
+    output = machine.tick()
+    block = output["c"].block
+    assert isinstance(block, AxisBlock)
+    block.state = [S.ERROR_STOP] * block.count
+    machine.check_owners(output)
+    assert machine.violations == ["seed 7 cycle 310: c does not brake in ErrorStop, at 20"]
+
+
+def moving_machine() -> CommandedMachine:
+    """The turntable of ptp.yaml turns with 20 deg/s."""
+    machine = CommandedMachine(7, "config/ptp.yaml")
+    machine.give("c", "move_velocity", {"velocity": 20.0})
+    machine.run(30)
+    assert machine.violations == []
+    return machine
 
 
 def test_the_command_counts_its_steps(capsys: pytest.CaptureFixture[str]) -> None:
