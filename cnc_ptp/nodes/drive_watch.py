@@ -65,7 +65,7 @@ class DriveWatch:
     stop begins with the cycle after the last setpoint, as everything else that depends on the unit: units wait for its
     blocks, so that all of them come to that cycle when the watchdog time has passed.
 
-    A clock that was itself held up for longer than the watchdog time does not know what units have done without it: the
+    A clock that was itself held up for some watchdog times does not know what units have done without it: the
     drive of one that is not heard for so long afterwards is left to its unit. Where units have stopped without it, the
     clock ends.
     """
@@ -82,10 +82,9 @@ class DriveWatch:
         self._watchdog = Watchdog(self._units, seconds=self._seconds)
         self._cycle_time = machine.cycle_time_us * 1e-6
         self._due = self._stopped_at = 0.0
-        self._resumed_at = -inf
-        self._looked, self._held_for = time.monotonic(), 0.0
-        self.longest_gap = HELD_UP * self._seconds
+        self.longest_pause = HELD_UP * self._seconds
         """Seconds between two looks after which this process was held up."""
+        self._held_for, self._resumed_at = 0.0, -inf
         self._known = {*self._units}
         """Units whose newest block is here: all, as long as this process was not held up."""
         self._publisher = node.create_publisher(msg.DriveStop, DRIVE_STOPS, EVENTS)
@@ -96,10 +95,7 @@ class DriveWatch:
             node.poll_input(BLOCK_TYPES[kind], block_topic(unit), take, NEWEST_BLOCK)
 
     def heard(self, unit: str) -> None:
-        """A unit that waits for others says that it lives."""
-        self._hear(unit)
-
-    def _hear(self, unit: str) -> None:
+        """A unit has sent a block, or says that it lives while it waits for others."""
         self._watchdog.heard(unit)
         if not self._on_probation():
             self._known.add(unit)
@@ -107,7 +103,6 @@ class DriveWatch:
     def restart(self) -> None:
         """The run begins: all count as heard."""
         self._watchdog.restart()
-        self._looked = time.monotonic()
 
     def look(self, stamps: Stamps, *, begun: bool) -> None:
         """To be called often: some times in each watchdog time, drives whose unit has been silent for it brake."""
@@ -115,13 +110,13 @@ class DriveWatch:
         if now < self._due:
             return
         self._due = now + self._seconds / 4.0
-        if now - self._looked > self.longest_gap:
-            self._resumed_at, self._held_for = now, now - self._looked
+        suspended = self._watchdog.was_suspended()
+        if self._watchdog.paused > self.longest_pause:
+            self._held_for, self._resumed_at = self._watchdog.paused, now
             self._known.clear()
-        self._looked = now
         self._node.take_inputs()
         self._require_own_ticks()
-        if self._watchdog.was_suspended():
+        if suspended:
             self._watchdog.restart()
             return
         for unit in self._watchdog.silent(self._judged(), begun=begun):
@@ -161,7 +156,7 @@ class DriveWatch:
         return not moved and time.monotonic() - self._stopped_at > FAREWELL
 
     def _take(self, unit: str, block: AxisBlock | SpindleBlock) -> None:
-        self._hear(unit)
+        self.heard(unit)
         if block.count:
             self._newest[unit] = block
 

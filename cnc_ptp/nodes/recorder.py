@@ -46,6 +46,7 @@ from cnc_ptp.nodes.topics import (
     block_topic,
     recorded_topic,
 )
+from cnc_ptp.nodes.watchdog import Pause
 from cnc_ptp.parameters import MachineParameters, machine_text, read_machine
 from cnc_ptp.protocol.blocks import CycleBlock, CycleTick, Event, PlcBlock, Severity
 from cnc_ptp.protocol.unit import PLC
@@ -120,7 +121,8 @@ class RecorderNode(PollingNode):
         self._next_cycle = dict.fromkeys(self._units, 0)
         self._stopped: dict[str, int] = {}
         """The first cycle of units whose drives have stopped on their own."""
-        self._heard = self._looked = self._ticked_at = time.monotonic()
+        self._heard = self._ticked_at = time.monotonic()
+        self._pause = Pause()
         self._last_plc = b""
         """The newest block of the PLC: it says whether the run has ended."""
         self._held_for, self._resumed_at = 0.0, -inf
@@ -193,7 +195,7 @@ class RecorderNode(PollingNode):
             end = max(self._next_cycle.values())
             text = f"the recorder was held up for {self._held_for:.1f} s, and the run has ended meanwhile"
             self._guarded(self._recording.note_missing)(f"{text}; what came after cycle {end - 1} is missing")
-            self._resumed_at = -inf
+            self._resumed_at = -inf  # once
 
     @property
     def settled(self) -> bool:
@@ -331,10 +333,9 @@ class RecorderNode(PollingNode):
 
     def _look(self) -> None:
         """Takes the ticks and blocks that have come, and writes when it is time."""
-        now = time.monotonic()
-        if now - self._looked > LOST_AFTER and self._recording is not None and self._handover is None:
-            self._held_for, self._resumed_at = now - self._looked, now
-        self._looked = now
+        pause = self._pause.take()
+        if pause > LOST_AFTER and self._recording is not None and self._handover is None:
+            self._held_for, self._resumed_at = pause, time.monotonic()
         self.take_polled()
         if self._free_run and self._handover is None:
             self._report(self._last_tick)

@@ -52,7 +52,7 @@ class Bus:
         for node in (self.node, self.outside):
             self.executor.add_node(node)
         self.spin_until(lambda: all(writer.get_subscription_count() for writer in self.writers.values()))
-        self.watch.longest_gap = 5.0  # a slow computer is another matter
+        self.watch.longest_pause = 5.0  # a slow computer is another matter
         self.watch.restart()
 
     def axis(self, unit, first_cycle, position, velocity, master="", error=0):
@@ -128,13 +128,13 @@ def test_a_silent_axis_brakes_from_its_newest_block(bus):
 @pytest.mark.parametrize("bus", [(PTP, "x", "y", "z")], indirect=True)
 def test_a_clock_that_was_held_up_knows_no_drive_until_it_hears_of_its_unit_again(bus):
     """x says nothing any more, z lives on and dies later."""
-    bus.watch.longest_gap = 0.2
+    bus.watch.longest_pause = 0.2
     for unit in "xyz":
         bus.axis(unit, 0, 1.0, 50.0)
     bus.spin_until(lambda: not bus.look() and bus.watch._newest.keys() == {"x", "y", "z"})
     time.sleep(0.5)
     assert not bus.look()
-    bus.watch.longest_gap = 5.0
+    bus.watch.longest_pause = 5.0
     bus.spin_until(lambda: not bus.look() and not bus.watch._on_probation())
     bus.axis("z", 500, 3.0, 50.0)
     stop = bus.stop_of("z")
@@ -149,7 +149,7 @@ def test_a_clock_that_was_held_up_ends_when_units_have_stopped_without_it(bus):
     for unit in "xy":
         bus.axis(unit, 0, 1.0, 50.0)
     bus.spin_until(lambda: not bus.look() and bus.watch._newest.keys() == {"x", "y"})
-    bus.watch.longest_gap = 0.4
+    bus.watch.longest_pause = 0.4
     time.sleep(0.5)
     bus.axis("y", 500, 2.0, 10.0, error=UPSTREAM_LOST)
     with pytest.raises(CncError) as refused:
