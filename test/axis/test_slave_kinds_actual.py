@@ -222,6 +222,9 @@ def test_slave_of_an_axis_with_a_delayed_error(actual: bool) -> None:
 # gantry
 
 
+COMPENSATION = {"acceleration": 1000.0, "deceleration": 1000.0, "process_velocity": 100.0}
+
+
 def gantry(limit: float, **slave: float) -> SlaveBench:
     """x and y as a pair, y 5 mm away from x, x on its way to 1000 mm."""
     bench = SlaveBench(machine=machine(PTP, y=slave))
@@ -282,6 +285,19 @@ def test_a_superimposed_motion_ends_with_the_fault_of_its_gantry_slave(master_mo
         bench.do(axis, "reset")
     bench.run(0.05)
     assert {bench.state("x"), bench.state("y")} == {S.STANDSTILL}
+
+
+def test_a_compensation_ends_with_the_fault_of_its_gantry_slave() -> None:
+    """It drives the pair apart, too, and goes no further than the ramp of both."""
+    bench = gantry(0.5)
+    bench.run(0.3)
+    warned = bench.do("y", "compensation_start", difference=40.0, length=500.0, velocity_increase=100.0, **COMPENSATION)
+    assert warned == ""
+    bench.run(3.0)
+    assert bench.errors()[0].startswith("P-ERR-23055 axis y: ")
+    assert {bench.state("x"), bench.state("y")} == {S.ERROR_STOP}
+    assert bench.values("y", "set_velocity")[-500:].tolist() == [0.0] * 500
+    assert 0.5 < bench.values("y")[-1] - bench.values("x")[-1] - 5.0 < 39.0
 
 
 def test_gantry_master_that_loses_its_enable_stops_with_its_slave() -> None:
