@@ -11,6 +11,7 @@ from cnc_ptp.client.job import Answer, Job, ProgramJob
 from cnc_ptp.client.link import Reply
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.command_files import with_table
+from cnc_ptp.plain_values import plain
 from cnc_ptp.plc.setpoint_file import check_setpoints
 from cnc_ptp.protocol.commands import (
     BAD_ARGUMENT,
@@ -63,7 +64,7 @@ class Asking(BlockUnit):
         """
         if command not in COMMANDS[self.kind]:
             check_command(self.kind, self.name, command, {})
-        given = {name: value for name, value in arguments.items() if value is not None}
+        given = {name: plain(value) for name, value in arguments.items() if value is not None}
         for name in FILE_CONTENTS & COMMANDS[self.kind][command].keys():
             given = with_table(given, name)
         for name, value in given.items():

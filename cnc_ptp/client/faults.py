@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from math import isfinite, isinf
+from math import isfinite, isnan
+from numbers import Real
 
 from cnc_ptp.errors import CncError, Value, nearest_name
 from cnc_ptp.machine.wiring import UNKNOWN_UNIT
@@ -23,11 +24,23 @@ IT_CONTINUES = "it continues"
 
 def check_seconds(where: str, name: str, value: float | None, effect: str, *, finite: bool = False) -> None:
     """Raises CncError 22001 for a time that is no number, or has no end or is below 0 where it must pass."""
-    if value is None or (isfinite(value) and (value >= 0.0 or not finite)) or (isinf(value) and not finite):
+    if value is None:
         return
-    wanted = "not finite" if finite else "not a number"
-    reason = f"{name} = {value} is {'below 0' if finite and isfinite(value) else wanted}"
-    raise CncError(BAD_ARGUMENT, reason, effect, where=f"{where} refused")
+    if not isinstance(value, Real) or isnan(value):
+        why = "not finite" if finite and isinstance(value, Real) else "not a number"
+    elif finite and not isfinite(value):
+        why = "not finite"
+    elif finite and value < 0.0:
+        why = "below 0"
+    else:
+        return
+    raise CncError(BAD_ARGUMENT, f"{name} = {value!r} is {why}", effect, where=f"{where} refused")
+
+
+def check_callable(where: str, name: str, value: object, effect: str) -> None:
+    """Raises CncError 22001 for what cannot be called."""
+    if not callable(value):
+        raise CncError(BAD_ARGUMENT, f"{name} = {value!r} is no function", effect, where=f"{where} refused")
 
 
 class UnknownUnit(CncError, AttributeError, KeyError):

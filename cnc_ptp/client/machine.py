@@ -12,7 +12,7 @@ from types import TracebackType
 from typing import Any, TypeVar
 
 from cnc_ptp.client.asking import Rows
-from cnc_ptp.client.faults import check_seconds, unknown_unit
+from cnc_ptp.client.faults import check_callable, check_seconds, unknown_unit
 from cnc_ptp.client.link import Link
 from cnc_ptp.client.plc_cycles import PlcCycles
 from cnc_ptp.client.recorder import Recorder
@@ -216,6 +216,7 @@ class Machine:
         await self._session.run_async(self._until(condition, timeout))
 
     def _until(self, condition: Callable[[], bool], timeout: float | None) -> Turns:
+        check_callable("wait_until", "condition", condition, "no time has passed")
         check_seconds("wait_until", "timeout", timeout, "no time has passed")
         return self._session.until(condition, timeout, "the condition has not come true", effect="")
 

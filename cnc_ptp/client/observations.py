@@ -31,6 +31,8 @@ TRAJECTORIES_KEPT = 100
 BLOCKS_KEPT = 1000
 """Of a stream that nobody reads: ten seconds of blocks."""
 EVENTS_KEPT = 10_000
+LONGEST_WAY = 4
+"""Blocks after which a command of the PLC is with every unit that still tells of itself."""
 
 
 class Mailbox(Generic[Item]):
@@ -139,6 +141,11 @@ class Observations:
         """The newest fault of a unit with this number, from a cycle on."""
         faults = [event for event in self._faults[unit] if event.error_id == error_id and event.cycle >= cycle]
         return faults[-1] if faults else None
+
+    def has_arrived(self, cycle: int) -> bool:
+        """What the PLC has commanded at `cycle` has reached all units; one that is silent is not waited for long."""
+        plc = self.blocks[PLC]
+        return self.cycle > cycle or plc.first_cycle > cycle + LONGEST_WAY * plc.count
 
     @property
     def cycle(self) -> int:

@@ -6,7 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from cnc_ptp.client.asking import Asking
-from cnc_ptp.client.job import Job, ProgramJob
+from cnc_ptp.client.faults import check_callable
+from cnc_ptp.client.job import Answer, Job, ProgramJob
 from cnc_ptp.client.made.axis_commands import AxisCommands
 from cnc_ptp.client.made.channel_commands import ChannelCommands
 from cnc_ptp.client.made.plc_commands import PlcCommands
@@ -98,12 +99,25 @@ class Channel(ChannelCommands):
 class Plc(PlcCommands):
     """The PLC of the machine."""
 
+    def emergency_stop(self, enabled: bool) -> Answer:
+        """As the command. A release has reached the units when this returns, so that resets may follow."""
+        answer = super().emergency_stop(enabled)
+        if not enabled:
+            seen = self._session.link.seen
+            arrived = self._session.until(
+                lambda: seen.has_arrived(answer.cycle), None, "plc: emergency_stop", may_stall=True
+            )
+            self._session.run(arrived)
+        return answer
+
     def on_handshake(self, callback: Callable[[HandshakeRequest], object] | None) -> None:
         """`callback(request)` gets the M, S, T, D and H functions of all channels that come from now on.
 
         It is called while this client waits. A request that needs one is acknowledged when it returns True, otherwise
         the channel waits for `acknowledge(request.id)`. None: they are acknowledged automatically again.
         """
+        if callback is not None:
+            check_callable("plc: on_handshake", "callback", callback, "nothing was changed")
         self._session.on_handshake(None)
         self.auto_acknowledge(callback is None)
         self._session.on_handshake(callback)

@@ -35,8 +35,22 @@ OF_ANOTHER = "enter"
 """The command whose arguments are another command line: ROS arguments among them are for that one."""
 
 
+class Command(click.Command):
+    """Refuses an option that is given twice with its values: click would take the last one without a word."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        _, _, given = self.make_parser(ctx).parse_args(args=[*args])
+        single = [each for each in given if isinstance(each, click.Option) and not (each.multiple or each.is_flag)]
+        for option in single:
+            if single.count(option) > 1 and not ctx.resilient_parsing:
+                raise click.UsageError(f"{option.opts[0]} is given {single.count(option)} times, and takes one value.")
+        return super().parse_args(ctx, args)
+
+
 class Group(click.Group):
     """Prints a refusal as one text and ends with status 2; no traceback. ROS arguments are its context's object."""
+
+    command_class = Command
 
     def main(self, args: Sequence[str] | None = None, *rest: Any, **options: Any) -> Any:
         words = sys.argv[1:] if args is None else list(args)

@@ -80,6 +80,8 @@ OVERLAY: Arguments = {
 """An external PLC serves a control unit of the HLI, or gives it back (protocol/control_units.py)."""
 FEEDFORWARD: Arguments = {"enabled": OPTIONAL_SWITCH, "weight_percent": OPTIONAL_NUMBER}
 
+SEVERAL: Mapping[str, str] = {"axis": "axes", "spindle": "spindles", "channel": "channels", "plc": "the PLC"}
+"""Kind of unit -> its plural in texts."""
 COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
     "axis": {
         "power": {"enabled": SWITCH},
@@ -337,9 +339,12 @@ def check_command(
     specification = COMMANDS[kind].get(command)
     if specification is None:
         known = sorted(set(COMMANDS[kind]) - INTERNAL)
+        others = [other for other in COMMANDS if command in COMMANDS[other] and command not in INTERNAL]
+        of_others = f"; it is a command of {' and '.join(SEVERAL[other] for other in others)}"
+        hint = of_others if others else nearest_name(command, known)
         raise CncError(
             UNKNOWN_COMMAND,
-            f"unknown command '{command}'{nearest_name(command, known)}",
+            f"unknown command '{command}'{hint}",
             f"nothing was changed. Known: {', '.join(known)}",
             where=f"{kind} {unit}",
             command=command,

@@ -64,6 +64,8 @@ def test_simulate_starts_there(part):
         (("--start-in", "a.nc"), "--start-in and --start-pass need --start-line or --start-block"),
         (("--start-line", 2, "--start-block", 40), "--start-line and --start-block exclude each other"),
         (("--start-line", 2), "--start-line and --start-block need --program"),
+        (("--plc", "a.py", "--plc", "b.py"), "--plc is given 2 times, and takes one value."),
+        (("--duration", 1, "--strict", "--duration=2"), "--duration is given 2 times, and takes one value."),
         (("--start-line", 0), "0 is not in the range x>=1"),
     ],
 )

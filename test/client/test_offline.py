@@ -13,6 +13,7 @@ from dataclasses import replace
 from math import inf, nan
 from pathlib import Path
 
+import numpy as np
 import pytest
 from client_stories import BLOCKS_EXPECTED, EXPECTED, block_story, refusal, story
 from graph_support import verified
@@ -25,7 +26,9 @@ from cnc_ptp.client import (
     Event,
     JobStatus,
     Machine,
+    MC_GearIn,
     MC_MoveAbsolute,
+    MC_Power,
     MC_Stop,
     UnknownUnit,
 )
@@ -86,7 +89,37 @@ def test_a_function_block_of_a_unit_that_does_not_have_its_command(m: Machine) -
     for _ in m.plc_cycles(0.02):
         move(True, position=1.0)
     assert move.error and move.error_id == 22002
-    assert move.error_text.startswith("spindle s: unknown command 'move_absolute'")
+    assert move.error_text.startswith(
+        "spindle s: unknown command 'move_absolute'; it is a command of axes; nothing was changed. Known: couple, "
+    )
+
+
+def test_a_coupling_without_a_master(m: Machine) -> None:
+    gear = MC_GearIn(m.x)
+    for _ in m.plc_cycles(0.02):
+        gear(True)
+    assert (gear.error, gear.busy, gear.error_id) == (True, False, 22001)
+    assert gear.error_text == "axis x: MC_GearIn refused: master is not given; nothing was changed"
+
+
+def test_numbers_of_numpy_are_numbers(m: Machine) -> None:
+    m.x.move_absolute(np.int64(10), velocity=np.float32(50.0)).wait()
+    assert m.x.state.set_position == 10.0
+    m.follow(["x", "y"], [(np.float64(1.0), np.array([15.0, 5.0]), np.array([0.0, 0.0]))]).wait()
+    assert (m.x.state.set_position, m.y.state.set_position) == (15.0, 5.0)
+    assert m.x.power(np.bool_(True)).warning == "axis x: power is on already"
+
+
+def test_resets_may_follow_the_release_of_an_emergency_stop(m: Machine) -> None:
+    move = m.x.move_absolute(100)
+    m.run_for(0.3)
+    m.plc.emergency_stop(True)
+    m.run_for(1.0)
+    assert refusal(m.x.reset)[0] == 26169 and move.status is JobStatus.FAILED
+    m.plc.emergency_stop(False)
+    m.x.reset()
+    m.run_for(0.01)
+    assert m.x.state.error_id == 0
 
 
 def test_a_job_whose_end_is_not_seen_is_an_error_of_its_block(m: Machine) -> None:
@@ -227,6 +260,20 @@ def test_a_wait_has_a_timeout_of_machine_time(m: Machine) -> None:
             lambda m: m.x.move_absolute(100).wait(timeout=nan),
             "axis x: move_absolute: wait refused: timeout = nan is not a number; it continues",
         ),
+        (lambda m: m.run_for("a"), "run_for refused: seconds = 'a' is not a number; no time has passed"),
+        (lambda m: m.wait_until("now"), "wait_until refused: condition = 'now' is no function; no time has passed"),
+        (
+            lambda m: m.plc.on_handshake("yes"),
+            "plc: on_handshake refused: callback = 'yes' is no function; nothing was changed",
+        ),
+        (
+            lambda m: MC_MoveAbsolute("x"),
+            "MC_MoveAbsolute: unit = 'x' is no axis, spindle or channel of a machine; nothing was made",
+        ),
+        (
+            lambda m: MC_Power(None),
+            "MC_Power: unit = None is no axis, spindle or channel of a machine; nothing was made",
+        ),
         (lambda m: m.x.states(nan), "stream refused: duration = nan is not a number; nothing was read"),
         (lambda m: m.events(nan), "stream refused: duration = nan is not a number; nothing was read"),
         (
@@ -239,7 +286,7 @@ def test_a_wait_has_a_timeout_of_machine_time(m: Machine) -> None:
         ),
     ],
 )
-def test_times_that_are_none_are_refused(m: Machine, call: Callable[[Machine], object], text: str) -> None:
+def test_what_a_client_gets_wrong_is_refused_before_anything_happens(m: Machine, call: Callable[[Machine], object], text: str) -> None:
     before = m.cycle
     assert refusal(lambda: call(m))[:2] == (22001, text)
     assert m.cycle == before
@@ -250,7 +297,7 @@ def test_waits_without_an_end_may_be_written_as_infinite(m: Machine) -> None:
     m.wait_until(lambda: m.x.state.set_position == 1.0, timeout=inf)
 
 
-def test_times_that_are_none_are_refused_in_an_event_loop(m: Machine) -> None:
+def test_what_a_client_gets_wrong_is_refused_before_anything_happens_in_an_event_loop(m: Machine) -> None:
     with pytest.raises(CncError, match="timeout = nan is not a number"):
         asyncio.run(m.wait_until_async(lambda: False, timeout=nan))
     with pytest.raises(CncError, match="seconds = inf is not finite"):

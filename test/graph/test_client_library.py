@@ -278,6 +278,26 @@ def test_a_client_that_is_killed_leaves_a_machine_that_stops_on_its_ramps(ros_do
     assert [c.command for c in recorded.commands if c.target == "x"] == ["move_absolute", "stop"]
 
 
+MOVES = """
+import os, signal
+from cnc_ptp.client import Machine
+m = Machine.connect(timeout=30.0)
+m.x.move_absolute(60, velocity=40)
+m.wait_until(lambda: m.x.state.set_velocity == 40.0, timeout=30.0)
+os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def test_the_motion_of_a_connected_client_that_is_killed_continues_to_its_target(m):
+    m.wait_until(lambda: m.x.state.set_velocity == 0.0, timeout=30.0)
+    m.x.move_absolute(0).wait(30.0)
+    done = subprocess.run([sys.executable, "-c", MOVES], timeout=120, check=False)
+    assert done.returncode == -signal.SIGKILL
+    m.wait_until(lambda: m.x.state.set_position == 60.0 and m.x.state.set_velocity == 0.0, timeout=30.0)
+    assert m.x.state.error_id == 0
+    m.x.move_absolute(0).wait(30.0)
+
+
 STOPS = """
 import os, signal, sys
 from cnc_ptp.client import Machine, MC_Stop

@@ -201,6 +201,14 @@ def test_what_comes_twice_is_computed_once(bench):
     assert (status.level, status.message) == (b"\x02", "2 blocks came twice")
 
 
+def test_a_command_before_the_first_tick_is_refused(bench):
+    record = bench.axis.command(Command("x", "move_absolute", MOVE))
+    assert (record.accepted, record.error_id, record.cycle) == (False, 26207, 0)
+    assert record.message == "axis x: move_absolute refused: the run has not begun; nothing was changed"
+    bench.run_blocks(1)
+    assert bench.axis.command(Command("x", "halt", {})).error_id != 26207
+
+
 def test_the_last_tick_ends_the_run_after_the_blocks_before_it(bench):
     bench.run_blocks(3)
     bench.outside.tick(30)

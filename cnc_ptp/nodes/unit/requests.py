@@ -8,6 +8,7 @@ from typing import Any
 from cnc_ptp.protocol.commands import NEEDS_SOMETHING, Argument, Arguments
 
 RUN_OVER = 26115
+NOT_BEGUN = 26207
 NOT_GIVEN = 1e300
 """Default of the fields that would move something as 0: an empty request is refused, or means none."""
 

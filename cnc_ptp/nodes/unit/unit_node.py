@@ -47,7 +47,7 @@ from cnc_ptp.nodes.unit.claim import claim_unit
 from cnc_ptp.nodes.unit.diagnostics import UnitDiagnostics
 from cnc_ptp.nodes.unit.live_state import LiveState, period_cycles
 from cnc_ptp.nodes.unit.parameters import declare_parameters, refusal, refused_change, write_command, written_parameter
-from cnc_ptp.nodes.unit.requests import RUN_OVER, given_arguments, objection
+from cnc_ptp.nodes.unit.requests import NOT_BEGUN, RUN_OVER, given_arguments, objection
 from cnc_ptp.nodes.watchdog import Watchdog
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.parameters.view.authority import OF_SERVICES
@@ -60,6 +60,7 @@ from cnc_ptp.wire.stamps import Stamps
 from cnc_ptp.wire.ticks import Tick, decode_tick
 from cnc_ptp.wire.unreadable import UNREADABLE_MESSAGE
 
+EMERGENCY_STOP = "emergency_stop"
 MACHINE = "machine"
 """The PLC node shows the parameters of the machine."""
 BLOCK_SKIPPED = 26102
@@ -358,9 +359,14 @@ class UnitNode(PollingNode):
         return self._gate.closed
 
     def command(self, command: Command, source: str | None = OF_SERVICES) -> CommandRecord:
-        """Carries out a command between two blocks: from a service or an action; None: of the machine itself."""
+        """Carries out a command between two blocks: from a service or an action; None: of the machine itself.
+
+        Before the first tick only an emergency stop is: a recorder may not listen yet.
+        """
         if self._gate.closed:
             return self.refuse(command, CncError(RUN_OVER, "the run has ended"))
+        if not self._running and source is not None and command.command != EMERGENCY_STOP:
+            return self.refuse(command, CncError(NOT_BEGUN, "the run has not begun"))
         with self._working():
             record = self._runner.command(command) if source is None else self._runner.asked(command, source)
         self._publish_records()

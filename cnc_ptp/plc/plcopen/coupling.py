@@ -30,6 +30,10 @@ class SlaveBlock(EndlessBlock):
     def _couple(self, command: str, master: Master, **arguments: Any) -> None:
         self._master_unit = None if isinstance(master, str) else master
         self._master = master if isinstance(master, str) else master.name
+        if not self._master:
+            block = type(self).__name__
+            self._fail(BAD_ARGUMENT, f"{self._where}: {block} refused: master is not given; nothing was changed")
+            return
         self._start(command, master=self._master, **arguments)
 
     def _while_active(self) -> None:

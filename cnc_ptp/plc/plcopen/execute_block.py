@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from cnc_ptp.plc.plcopen.buffer_mode import SPINDLE_MODES, mode_arguments
 from cnc_ptp.plc.plcopen.faults import BAD_BUFFER_MODE, CAME_TO_REST
-from cnc_ptp.plc.plcopen.unit_reference import UnitReference
+from cnc_ptp.plc.plcopen.unit_reference import UnitReference, unit_of
 from cnc_ptp.protocol.jobs import JobStatus
 from cnc_ptp.protocol.unit import STOP_HOLDS
 
@@ -28,7 +28,7 @@ class ExecuteBlock:
     """It ends with its job; otherwise with the answer of the unit."""
 
     def __init__(self, unit: UnitReference) -> None:
-        self.unit = unit
+        self.unit = unit_of(self, unit)
         self.execute = False
         """The input, as in the last call."""
         self.busy = False

@@ -6,7 +6,7 @@ from typing import Any
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters.declare.declarations import ParameterValue
-from cnc_ptp.plc.plcopen.unit_reference import UnitReference
+from cnc_ptp.plc.plcopen.unit_reference import UnitReference, unit_of
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.blocks import AxisBlock, SpindleBlock
 
@@ -21,7 +21,7 @@ class LevelBlock:
     """
 
     def __init__(self, unit: UnitReference) -> None:
-        self.unit = unit
+        self.unit = unit_of(self, unit)
         self.enable = False
         """The input, as in the last call."""
         self.busy = False
@@ -85,7 +85,7 @@ class MC_Power:
     """Enable of an axis or spindle while `enable` is true, and the feed releases of an axis."""
 
     def __init__(self, unit: UnitReference) -> None:
-        self.unit = unit
+        self.unit = unit_of(self, unit)
         self.enable = False
         self.status = False
         """The unit has its enable."""

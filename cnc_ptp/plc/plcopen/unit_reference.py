@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import Any, Protocol
 
+from cnc_ptp.errors import CncError
 from cnc_ptp.parameters.declare.declarations import ParameterValue
 from cnc_ptp.protocol.blocks import CommandAnswer, CycleBlock
+from cnc_ptp.protocol.commands import BAD_ARGUMENT
 from cnc_ptp.protocol.jobs import JobStatus
 
 
@@ -43,3 +45,11 @@ class UnitReference(Protocol):
 
     def parameter(self, name: str) -> ParameterValue:
         """Value of a parameter in the unit of its list, by P number or name. Raises CncError 22169."""
+
+
+def unit_of(block: object, unit: UnitReference) -> UnitReference:
+    """The unit that a function block gets. Raises CncError 22001 for anything else, such as the name of a unit."""
+    if hasattr(unit, "give") and hasattr(unit, "job_status"):
+        return unit
+    reason = f"unit = {unit!r} is no axis, spindle or channel of a machine"
+    raise CncError(BAD_ARGUMENT, reason, "nothing was made", where=type(block).__name__)

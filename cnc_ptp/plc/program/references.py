@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 from cnc_ptp.parameters import ParameterSet
 from cnc_ptp.parameters.declare.declarations import ParameterValue
 from cnc_ptp.parameters.view.by_name import parameter_by_name
+from cnc_ptp.plain_values import plain
 from cnc_ptp.protocol.axis_states import AxisStateCode, StatusBit
 from cnc_ptp.protocol.blocks import (
     AxisBlock,
@@ -61,7 +62,7 @@ class Reference:
             text = f"{self.kind} {self.name}: '{command}' is given by watchdogs and units only; nothing was changed"
             self._note(self._answers, self._tickets, CommandAnswer(0, UNKNOWN_COMMAND, 0, text))
             return self._tickets
-        given = Command(self.name, command, arguments)
+        given = Command(self.name, command, {name: plain(value) for name, value in arguments.items()})
         self._waiting.append((self._tickets, given))
         self._send(given)
         return self._tickets
