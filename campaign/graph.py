@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -37,10 +38,13 @@ class Graph:
         self.processes: dict[str, psutil.Process] = {}
 
     def wait_for_start(self) -> bool:
-        """True when the recording has begun, with the first cycle, and every process is known by its name."""
+        """True when the recording has begun, with the first cycle, and every process is known by its name.
+
+        A file without contents is only the question whether it can be written.
+        """
         deadline = time.monotonic() + START_PATIENCE
         while time.monotonic() < deadline and self.running:
-            if self.recording.exists():
+            if self.recording.exists() and self.recording.stat().st_size:
                 self.processes = processes_of(psutil.Process(self.process.pid))
                 return True
             time.sleep(POLL)
@@ -53,6 +57,12 @@ class Graph:
     @property
     def output(self) -> str:
         return self._log.read_text(errors="replace")
+
+    @property
+    def lateness(self) -> float:
+        """Seconds by which the machine was behind the clock at most, as the run has told."""
+        told = re.search(r"block lateness .* largest ([0-9.]+) ms", self.output)
+        return float(told[1]) / 1000.0 if told else 0.0
 
     def wait(self, seconds: float) -> bool:
         """True when it has ended within so many seconds."""

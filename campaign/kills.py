@@ -110,7 +110,8 @@ def run(fault: Fault, folder: Path, *, domain: int) -> Row:
         row.outcome = await_end(graph, fault)
         row.seconds = round(time.monotonic() - happened, 2)
         row.problems += left_behind(graph, fault, row.outcome)
-        written = int((happened - begin) * 1e6 / read_machine(str(case.machine)).cycle_time_us)
+        computed = happened - begin - graph.lateness  # a machine that is behind has not yet come to that cycle
+        written = int(computed * 1e6 / read_machine(str(case.machine)).cycle_time_us)
         check_recording(row, case, recording, written)
     finally:
         graph.end()
@@ -183,7 +184,9 @@ def check_recording(row: Row, case: Case, recording: Path, written: int) -> None
     if row.cycles < written - FLUSHED - machine.watchdog_ms * 1000 // machine.cycle_time_us:
         row.problems.append(f"the recording ends at cycle {row.cycles}, the fault came at {written}")
     of_recorder = fault.node == "recorder" and (fault.signal != HOLD or not recorded.complete)
-    row.problems += [*motion.problems(recorded, machine, ended=not of_recorder), *motion.violations(recording)]
+    stopped_in = {fault.node} if fault.signal == HOLD else set()
+    row.problems += motion.problems(recorded, machine, ended=not of_recorder, stopped_in=stopped_in)
+    row.problems += motion.violations(recording)
     row.own_stops = {stop.unit: len(stop.actual_position) for stop in recorded.drive_stops}
     check_links(row, case, recorded)
     row.problems += not_retracted(recorded)

@@ -5,7 +5,7 @@ The checks are their own: differences of recorded values, no formula of the kern
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -55,20 +55,29 @@ def tracks(recorded: Recorded) -> dict[str, Track]:
             continue
         stop = next((each for each in recorded.drive_stops if each.unit == unit), None)
         if stop is not None:
-            columns[2] = np.concatenate([columns[2], stop.actual_position])
-            columns[3] = np.concatenate([columns[3], stop.actual_velocity])
+            followed = int(np.searchsorted(rows["cycle"], stop.first_cycle))
+            columns[2] = np.concatenate([columns[2][:followed], stop.actual_position])
+            columns[3] = np.concatenate([columns[3][:followed], stop.actual_velocity])
         found[unit] = Track(rows["cycle"], *columns, own_stop=0 if stop is None else len(stop.actual_position))
     return found
 
 
-def problems(recorded: Recorded, machine: MachineParameters, *, ended: bool) -> Iterator[str]:
-    """What is wrong with the motions of a recording; `ended`: it goes on to the standstill."""
+def problems(
+    recorded: Recorded, machine: MachineParameters, *, ended: bool, stopped_in: Collection[str] = ()
+) -> Iterator[str]:
+    """What is wrong with the motions of a recording; `ended`: it goes on to the standstill.
+
+    `stopped_in`: units whose process may have been held up while it sent a block, so that some have it and its drive
+    has not.
+    """
     cycle = machine.cycle_time_us * 1e-6
     for unit, track in tracks(recorded).items():
         if len(track.cycles) and np.any(np.diff(track.cycles.astype(np.int64)) != 1):
             yield f"{unit}: cycles are missing"
         stop = next((each for each in recorded.drive_stops if each.unit == unit), None)
-        if stop is not None and stop.first_cycle != track.cycles[-1] + 1:
+        late = 0 if stop is None else int(track.cycles[-1]) + 1 - stop.first_cycle
+        if late < 0 or late > (machine.block_cycles if unit in stopped_in else 0):
+            assert stop is not None
             yield f"{unit}: the drive stops in cycle {stop.first_cycle}, the last setpoint is of {track.cycles[-1]}"
         if ended and stop is None and track.set_velocity[-1] != 0.0:
             yield f"{unit}: still moves at the end with {track.set_velocity[-1]:.3f}"

@@ -67,6 +67,19 @@ def test_a_drive_that_has_braked_on_its_own_goes_on_from_the_last_block():
     ]
 
 
+def test_a_process_that_was_held_up_may_have_sent_a_block_that_its_drive_has_not_got():
+    """Seed 38, number 210: the recorder got it."""
+    moving = rows(np.full(110, 50.0))
+    velocities = ramp(50.0, 10)
+    stop = DriveStop("x", 100, moving["actual_position"][99] + np.cumsum(velocities) * CYCLE, velocities)
+    made = recorded(moving, stops=[stop])
+    text = "x: the drive stops in cycle 100, the last setpoint is of 109"
+    assert found(made) == [text]
+    assert list(motion.problems(made, MACHINE, ended=True, stopped_in={"x"})) == []
+    two_blocks = recorded(rows(np.full(111, 50.0)), stops=[stop])
+    assert "the last setpoint is of 110" in next(motion.problems(two_blocks, MACHINE, ended=True, stopped_in={"x"}))
+
+
 def test_steps_jumps_and_gaps_are_found():
     step = ramp()
     step[100] = 300.0

@@ -286,7 +286,9 @@ def test_a_wait_has_a_timeout_of_machine_time(m: Machine) -> None:
         ),
     ],
 )
-def test_what_a_client_gets_wrong_is_refused_before_anything_happens(m: Machine, call: Callable[[Machine], object], text: str) -> None:
+def test_what_a_client_gets_wrong_is_refused_before_anything_happens(
+    m: Machine, call: Callable[[Machine], object], text: str
+) -> None:
     before = m.cycle
     assert refusal(lambda: call(m))[:2] == (22001, text)
     assert m.cycle == before
