@@ -37,7 +37,7 @@ class Change:
 
     parameters  unit.parameter=value
     override    of all channels, percent; recorded ones no longer count
-    program     arguments of the command `load` in place of the recorded ones
+    program     arguments of the command `load`: in place of the recorded ones, or of the program that runs at `begin`
     commands    further ones, at their times
     """
 
@@ -66,10 +66,12 @@ class WhatIf:
         self.begin = self._block_at(change.begin)
         self.end = recorded.end if change.end is None else self._end_at(change.end)
         self._commands = commands_by_cycle(recorded.commands, self._old)
-        self._require_load()
+        self._other_program = self._program_that_runs()
         self.note = ""
         self.running: list[str] = []
         """Channels whose program has not ended so far."""
+        self.given: set[tuple[int, str, str]] = set()
+        """Cycle, unit and name of the commands that the change has given."""
         self._answers = RecordedAnswers(recorded, self.begin, self._old.block_cycles)
 
     def run(self) -> Iterator[Outputs]:
@@ -82,7 +84,9 @@ class WhatIf:
             changed.go_on_from(machine.next_cycle, runners, blocks)
             machine = changed
         while machine.next_cycle < self.end:
-            outputs = machine.changed_tick(self._changed_commands(machine))
+            own = self._own_commands(machine)
+            self.given |= {(machine.next_cycle, command.target, command.command) for command in own}
+            outputs = machine.changed_tick(by_unit([*self._recorded_commands(machine), *own]))
             self.running = [name for name, output in outputs.items() if is_running(output.block)]
             yield outputs
 
@@ -105,15 +109,15 @@ class WhatIf:
         count = self._old.block_cycles
         return round(seconds / self._cycle_time) // count * count
 
-    def _require_load(self) -> None:
-        """Raises CncError 26157 where there is no program to be replaced."""
-        if self._change.program is None:
-            return
-        loads = [record.cycle for records in self._commands.values() for record in records if record.command == "load"]
-        if not any(cycle >= self.begin for cycle in loads):
-            last = f"the last one is loaded at {max(loads) * self._cycle_time:g} s" if loads else "none is loaded"
-            reason = f"--program takes the place of a program that is loaded after --from, and {last}"
-            raise CncError(NO_LOAD, reason, NOTHING)
+    def _program_that_runs(self) -> OtherProgram | None:
+        """What brings the other program in where none is loaded after `begin`. Raises CncError 26157 without any."""
+        program = self._change.program
+        loads = [record for records in self._commands.values() for record in records if record.command == "load"]
+        if program is None or any(record.cycle >= self.begin for record in loads):
+            return None
+        if not loads:
+            raise CncError(NO_LOAD, "--program takes the place of a program, and none is loaded", NOTHING)
+        return OtherProgram(loads[-1].target, program)
 
     def _at_begin(self) -> OfflineMachine:
         """The machine as it was recorded before `begin`, with a PLC that answers as the recorded one did."""
@@ -132,17 +136,22 @@ class WhatIf:
         plc.outside.append(DelayedAnswers(self._answers))
         return machine
 
-    def _changed_commands(self, machine: OfflineMachine) -> dict[str, list[Command]]:
-        cycle = machine.next_cycle
-        commands = [self._changed(record) for record in refused_again(machine, self._commands.get(cycle, ()))]
-        given = [command for command in commands if command is not None]
+    def _recorded_commands(self, machine: OfflineMachine) -> list[Command]:
+        records = refused_again(machine, self._commands.get(machine.next_cycle, ()))
+        return [command for record in records if (command := self._changed(record)) is not None]
+
+    def _own_commands(self, machine: OfflineMachine) -> list[Command]:
+        """What the change itself commands in the next block."""
+        given, cycle = [], machine.next_cycle
         if cycle == self.begin and self._change.override is not None:
             given += [Command(name, "set_override", {"percent": self._change.override}) for name in self._old.channels]
         end = cycle + self._old.block_cycles
         for entry in self._change.commands:
             if max(cycle, self.begin) <= round(entry.at / self._cycle_time) < end:
                 given.append(entry.command)
-        return by_unit(given)
+        if self._other_program is not None:
+            given += self._other_program.commands(machine.parts[1])
+        return given
 
     def _changed(self, record: CommandRecord) -> Command | None:
         change, command = self._change, Command.from_record(record)
@@ -151,8 +160,29 @@ class WhatIf:
         if change.override is not None and command.command == "set_override" and command.target in self._old.channels:
             return None
         if change.program is not None and command.command == "load":
+            self.given.add((record.cycle, command.target, "load"))
             return Command(command.target, "load", dict(change.program), command.id)
         return command
+
+
+class OtherProgram:
+    """Another program in the place of the one that runs: reset, and when the path stands load and start."""
+
+    def __init__(self, channel: str, program: Mapping[str, Any]) -> None:
+        """`program`: arguments of `load`."""
+        self.channel = channel
+        self._program = dict(program)
+        self._is_reset = self._is_started = False
+
+    def commands(self, blocks: Mapping[str, CycleBlock]) -> list[Command]:
+        """Those of the next block; `blocks`: the newest of all units."""
+        if self._is_started:
+            return []
+        if self.channel in blocks and is_running(blocks[self.channel]):
+            give_reset, self._is_reset = not self._is_reset, True
+            return [Command(self.channel, "reset")] if give_reset else []
+        self._is_started = True
+        return [Command(self.channel, "load", self._program), Command(self.channel, "start")]
 
 
 RESTING: Final = (int(ChannelStateCode.IDLE), int(ChannelStateCode.READY))

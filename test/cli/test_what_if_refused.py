@@ -32,3 +32,22 @@ def test_commands_that_are_refused_now_are_named(tmp_path: Path) -> None:
         "Standstill; nothing was changed"
     ]
     assert "to x at 1 s" not in call("replay", path, "--override", 100, "-o", tmp_path / "same.mcap").output
+
+
+def test_a_change_that_the_machine_refuses_is_status_1(tmp_path: Path) -> None:
+    lines, path = tmp_path / "lines.nc", tmp_path / "run.mcap"
+    lines.write_text("G01 X50 F2400\nM30\n")
+    mill = ROOT / "config" / "mill.yaml"
+    assert call("simulate", mill, "--program", lines, "--record", path).exit_code == 0
+    result = call("replay", path, "--override", 500)
+    assert result.exit_code == 1
+    assert result.stderr.splitlines() == [
+        "error: set_override to channel at 0 s is refused: channel channel: set_override refused: percent = 500.0 "
+        "is not within 0 ... 150 (P-CHAN-00056); nothing was changed"
+    ]
+    other = tmp_path / "other.nc"
+    other.write_text("G01 X50 F2400 Q\n")
+    result = call("replay", path, "--program", other)
+    assert result.exit_code == 1 and result.stderr.startswith(
+        "error: load to channel at 0 s is refused: channel channel: "
+    )

@@ -197,10 +197,27 @@ def test_refusals(mill: Recorded, tmp_path: Path) -> None:
         "P-ERR-26153 --set 'x.getriebe.0.kv=fast': axis list, P-AXIS-00099 getriebe[0].kv of /x: value 'fast' is text, "
         "an integer is needed; nothing was computed"
     )
-    assert refusal(mill, Change(2.0, program={})) == (
-        "P-ERR-26157 --program takes the place of a program that is loaded after --from, and the last one is loaded "
-        "at 0 s; nothing was computed"
+
+
+def test_a_program_takes_the_place_of_one(tmp_path: Path) -> None:
+    other = record(Run("config/ptp.yaml", scenario="examples/trajectory.yaml", seconds=0.5), tmp_path / "ptp.mcap")
+    assert refusal(other, Change(program={})) == (
+        "P-ERR-26157 --program takes the place of a program, and none is loaded; nothing was computed"
     )
+
+
+@pytest.mark.parametrize("begin", [2.0, 1e9])
+def test_a_program_that_runs_is_reset_and_the_other_one_starts(mill: Recorded, tmp_path: Path, begin: float) -> None:
+    """In motion at 2 s; at the end the channel rests, and nothing is reset."""
+    begin = min(begin, end_of(mill) / 1000)
+    program = {"program": "other.nc", "text": "G00 X10 Y10\nG01 X40 F2400\nM30"}
+    again, _ = changed(mill, tmp_path / "other.mcap", Change(begin, begin + 4.0, program=program))
+    x = again.states["/x/state"]["set_position"]
+    assert x[-1] == 40.0 and again.states["/channel/state"]["path_velocity"][-1] == 0.0
+    first = mill.states["/x/state"]["set_velocity"][round(begin * 1000) - 1]
+    assert again.states["/x/state"]["set_velocity"][0] == pytest.approx(first, abs=20.0)
+    given = [record.command for record in again.commands if record.target == "channel" and record.accepted]
+    assert given == (["reset", "load", "start"] if begin == 2.0 else ["load", "start"])
 
 
 def test_a_recording_without_a_machine_file_is_refused(tmp_path: Path) -> None:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import gc
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import chain, islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import NamedTuple
 
 from cnc_ptp.commands.look.diff import check_diff_page, show_difference
 from cnc_ptp.commands.run.progress import RunProgress
@@ -36,7 +38,10 @@ def what_if(
     diff: bool,
     page: str | None = None,
 ) -> int:
-    """Computes, records to `output`; prints the difference if there is no output, or `diff` or a page asks for it."""
+    """Computes, records to `output`; prints the difference if there is no output, or `diff` or a page asks for it.
+
+    Status 1 where the machine has refused what was to be changed.
+    """
     check_recording(output, recording=recording, NC_program=program, commands=commands)
     check_diff_page(page, recording=recording, NC_program=program, commands=commands)
     with nothing_collected(), RunInputs(recording) as recorded, TemporaryDirectory() as folder:
@@ -49,14 +54,23 @@ def what_if(
             print(f"note: {recorded.missing}")
         if recorded.plc_file:
             print(f"note: the PLC {recorded.plc_file} is not executed again; its commands are those of the recording")
-        for text in refused:
+        for text in refused.of_recording:
             print(f"note: {text}")
+        for text in refused.of_change:
+            print(f"error: {text}", file=sys.stderr)
         for channel in run.running:
             print(f"note: the program of {channel} has not ended; --to a later time computes more of it")
         if diff or page or output is None:
             names = (Path(recording).name, Path(output).name if output else "changed")
             show_difference(recording, path, page, names, end=end)
-    return 0
+    return int(bool(refused.of_change))
+
+
+class Refused(NamedTuple):
+    """Texts of commands that were refused and had not been in the recorded run."""
+
+    of_recording: list[str]
+    of_change: list[str]
 
 
 @contextmanager
@@ -69,10 +83,10 @@ def nothing_collected() -> Iterator[None]:
         gc.enable()
 
 
-def compute(run: WhatIf, recorded: RunInputs, path: str) -> list[str]:
-    """Records the run; texts of the commands that were refused and had not been in the recorded run."""
+def compute(run: WhatIf, recorded: RunInputs, path: str) -> Refused:
+    """Records the run."""
     known = {(record.cycle, record.target, record.command) for record in recorded.commands if not record.accepted}
-    refused: list[str] = []
+    refused = Refused([], [])
     notes = {"what_if_of": recorded.path.name, **origin()}
     if run.begin:
         notes[WITHOUT] = (
@@ -90,9 +104,13 @@ def compute(run: WhatIf, recorded: RunInputs, path: str) -> list[str]:
             write(recording, outputs)
             progress.show_block(outputs)
             for record in [record for output in outputs.values() for record in output.records if not record.accepted]:
-                if (record.cycle, record.target, record.command) not in known:
-                    at = record.cycle * recorded.cycle_time_ns * 1e-9
-                    refused.append(f"{record.command} to {record.target} at {at:g} s is refused: {record.message}")
+                what = (record.cycle, record.target, record.command)
+                at = record.cycle * recorded.cycle_time_ns * 1e-9
+                text = f"{record.command} to {record.target} at {at:g} s is refused: {record.message}"
+                if what in run.given:
+                    refused.of_change.append(text)
+                elif what not in known:
+                    refused.of_recording.append(text)
     return refused
 
 
