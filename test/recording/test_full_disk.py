@@ -134,3 +134,14 @@ def test_a_full_disk_leaves_what_was_recovered_before(disk, tmp_path):
     leave(disk, 0)
     assert f": {NO_SPACE}; " in refusal(recover, source, output)
     assert output.read_text() == "former" and len([*disk.iterdir()]) == 2
+
+
+def test_a_full_disk_leaves_what_a_replay_has_recorded_before(disk, tmp_path):
+    run, output = str(tmp_path / "run.mcap"), disk / "new.mcap"
+    words = ["simulate", str(ROOT / "config" / "ptp.yaml"), "--duration", "3", "--record", run]
+    assert CliRunner().invoke(main, words).exit_code == 0
+    output.write_text("former")
+    leave(disk, 8)
+    result = CliRunner().invoke(main, ["replay", run, "--set", "x.getriebe.0.kv=8000", "-o", str(output)])
+    assert result.exit_code == 2 and f"{NO_SPACE}; " in result.stderr
+    assert output.read_text() == "former" and len([*disk.iterdir()]) == 2

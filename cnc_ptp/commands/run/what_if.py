@@ -5,7 +5,7 @@ from __future__ import annotations
 import gc
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from itertools import chain, islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -19,7 +19,7 @@ from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.plc.scenario import Entry, parse_scenario
 from cnc_ptp.recording.offline_run import write
 from cnc_ptp.recording.origin import WITHOUT, origin
-from cnc_ptp.recording.overwriting import check_recording
+from cnc_ptp.recording.overwriting import check_recording, replacing
 from cnc_ptp.recording.run_inputs import RunInputs
 from cnc_ptp.recording.what_if import Change, WhatIf
 from cnc_ptp.recording.writer import Recording
@@ -48,7 +48,8 @@ def what_if(
         change = Change(begin, end, parameters, override, load_of(recorded, program), entries_of(recorded, commands))
         run = WhatIf(recorded, change)
         path = output or str(Path(folder) / "what_if.mcap")
-        refused = compute(run, recorded, path)
+        with replacing(path) if Path(path).exists() else nullcontext(path) as place:
+            refused = compute(run, recorded, str(place))
         print(f"note: {run.note}" if run.note else "computed from 0 s")
         if recorded.missing:
             print(f"note: {recorded.missing}")
