@@ -44,7 +44,7 @@ class Graph:
         """
         deadline = time.monotonic() + START_PATIENCE
         while time.monotonic() < deadline and self.running:
-            if self.recording.exists() and self.recording.stat().st_size:
+            if size_of(self.recording):
                 self.processes = processes_of(psutil.Process(self.process.pid))
                 return True
             time.sleep(POLL)
@@ -99,6 +99,14 @@ class Graph:
             self.process.kill()
         self.process.wait()
         self.orphans(5.0)
+
+
+def size_of(file: Path) -> int:
+    """0 for one that is not there, or no longer."""
+    try:
+        return file.stat().st_size
+    except FileNotFoundError:
+        return 0
 
 
 def processes_of(supervisor: psutil.Process) -> dict[str, psutil.Process]:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from cnc_ptp.protocol.channel_states import ChannelStateCode
+from cnc_ptp.protocol.channel_states import IN_PROGRAM, ChannelStateCode
 from cnc_ptp.protocol.notes import Note
 
 CUT_OFF = 26121
@@ -24,7 +24,7 @@ class ProgramReport:
 
     def add(self, block: Any) -> None:
         """`block`: the next ChannelBlock, or its message."""
-        self.cycles += block.count if block.path_active else 0
+        self.cycles += sum(state in IN_PROGRAM for state in block.state)
         self.done, self.line, self.state = block.done, block.line[-1], block.state[-1]
 
 

@@ -18,8 +18,8 @@ from cnc_ptp.nc.vocabularies import VOCABULARIES
 from cnc_ptp.parameters import ChannelParameters, MachineParameters, load_machine
 from cnc_ptp.path.geometry import NEGLIGIBLE_MM, Arc
 from cnc_ptp.protocol.blocks import CommandRecord
+from cnc_ptp.protocol.channel_states import IN_PROGRAM
 from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, Recorded
-from cnc_ptp.recording.statistics import IN_PROGRAM
 from cnc_ptp.wire.layout import Records
 
 Floats = npt.NDArray[np.float64]

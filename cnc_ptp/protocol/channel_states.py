@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from enum import IntEnum
+from typing import Final
 
 
 class ChannelStateCode(IntEnum):
@@ -16,3 +17,13 @@ class ChannelStateCode(IntEnum):
     STOPPED = 5
     STOPPING = 6
     ERROR = 7
+
+
+IN_PROGRAM: Final = (
+    ChannelStateCode.RUNNING,
+    ChannelStateCode.HOLD,
+    ChannelStateCode.WAITING,
+    ChannelStateCode.STOPPED,
+    ChannelStateCode.STOPPING,
+)
+"""A program is being executed; waiting is a part of its time."""

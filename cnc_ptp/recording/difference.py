@@ -12,8 +12,9 @@ import yaml
 
 from cnc_ptp import yaml_text
 from cnc_ptp.errors import CncError
+from cnc_ptp.protocol.channel_states import IN_PROGRAM
 from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, SPINDLE_STATE, Recorded
-from cnc_ptp.recording.statistics import IN_PROGRAM, in_machine_order
+from cnc_ptp.recording.statistics import in_machine_order
 from cnc_ptp.recording.units import unit_of
 from cnc_ptp.wire.layout import Records
 

@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 from mcap.opcode import Opcode
 
+from cnc_ptp.protocol.channel_states import IN_PROGRAM
 from cnc_ptp.recording.mcap_chunks import MessageRun, RawRecord
 from cnc_ptp.recording.mcap_index import ChunkPlace, McapIndex
 from cnc_ptp.recording.opened import WORKERS, ahead
@@ -40,7 +41,7 @@ from cnc_ptp.recording.reader import (
     read_recording,
 )
 from cnc_ptp.recording.selection import NEAR_CYCLES
-from cnc_ptp.recording.statistics import IN_PROGRAM, largest_error
+from cnc_ptp.recording.statistics import largest_error
 from cnc_ptp.wire.layout import Bytes, Layout, Records, fixed_layout
 from cnc_ptp.wire.schemas import full_name, recorded_schema
 

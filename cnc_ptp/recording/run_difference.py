@@ -13,11 +13,11 @@ import numpy.typing as npt
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import MachineParameters, load_machine
+from cnc_ptp.protocol.channel_states import IN_PROGRAM
 from cnc_ptp.recording.difference import COMPARED, NOT_COMPARABLE, FieldDifference, field_difference
 from cnc_ptp.recording.opened import TIME, OpenRecording
 from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, SPINDLE_STATE
 from cnc_ptp.recording.selection import NOT_RECORDED, asked_time
-from cnc_ptp.recording.statistics import IN_PROGRAM
 from cnc_ptp.recording.writer import MACHINE_FILE
 
 OTHER_MACHINE: Final = 26158

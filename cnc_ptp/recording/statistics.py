@@ -13,19 +13,11 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import MachineParameters, load_machine
 from cnc_ptp.parameters.view.encoder import uses_feed_constant
 from cnc_ptp.protocol.blocks import Severity
-from cnc_ptp.protocol.channel_states import ChannelStateCode
+from cnc_ptp.protocol.channel_states import IN_PROGRAM
 from cnc_ptp.recording.node_figures import LATENESS_P50, LATENESS_P99, LOST_BLOCKS
 from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, Recorded
 from cnc_ptp.recording.writer import MACHINE_FILE
 from cnc_ptp.wire.layout import Records
-
-IN_PROGRAM = (
-    ChannelStateCode.RUNNING,
-    ChannelStateCode.HOLD,
-    ChannelStateCode.WAITING,
-    ChannelStateCode.STOPPED,
-    ChannelStateCode.STOPPING,
-)
 
 
 @dataclass(frozen=True, slots=True)
