@@ -59,6 +59,11 @@ class Graph:
         return self._log.read_text(errors="replace")
 
     @property
+    def summed_up(self) -> bool:
+        """It has said how it went, and that nothing has failed."""
+        return "machine time" in self.output and "failed:" not in self.output
+
+    @property
     def lateness(self) -> float:
         """Seconds by which the machine was behind the clock at most, as the run has told."""
         told = re.search(r"block lateness .* largest ([0-9.]+) ms", self.output)

@@ -127,13 +127,20 @@ def strike(process: psutil.Process, fault: Fault) -> None:
 
 
 def await_end(graph: Graph, fault: Fault) -> str:
-    """What became of it; one that survived is interrupted."""
+    """What became of it; one that survived is interrupted.
+
+    Over are also runs that ended as they were to: one that was interrupted only when Python ended, and one whose
+    recorder, which writes to the end when it gets SIGTERM, had written everything.
+    """
     if fault.signal == HOLD and not graph.wait(SURVIVED_AFTER):
         graph.interrupt()
-        return "survived" if graph.wait(END_PATIENCE) else "does not end"
-    if fault.signal == HOLD and graph.process.returncode == 0:
-        return "over"
-    return "stopped" if graph.wait(END_PATIENCE) else "does not end"
+        if not graph.wait(END_PATIENCE):
+            return "does not end"
+        return "over" if graph.process.returncode == -signal.SIGINT and graph.summed_up else "survived"
+    if not graph.wait(END_PATIENCE):
+        return "does not end"
+    whole = fault.signal == HOLD or (fault.signal == TERM and fault.node == "recorder")
+    return "over" if whole and graph.process.returncode == 0 else "stopped"
 
 
 def left_behind(graph: Graph, fault: Fault, outcome: str) -> Iterator[str]:

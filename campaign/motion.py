@@ -122,8 +122,9 @@ def torn(
     """How far actual positions of a master and its slave have left their relation, and how far they may, mm (deg).
 
     Somebody that is lost is noticed with the next block or the one after it: until then the others go on. Then each
-    brakes on its own ramp (P-AXIS-00002): with a factor other than 1 their distances differ. A master that is a slave
-    itself, by the link `above`, may also come to rest on the ramp of its own master.
+    brakes on its own ramp (P-AXIS-00002): with a factor other than 1 their distances differ. A drive that brakes on its
+    own does not catch up with its setpoints, while the other one does. A master that is a slave itself, by the link
+    `above`, may also come to rest on the ramp of its own master.
     """
     found = tracks(recorded)
     master, slave = found[link.master], found[link.slave]
@@ -133,13 +134,14 @@ def torn(
     fastest = max(np.abs(slave.actual_velocity).max(), abs(link.factor) * np.abs(master.actual_velocity).max())
     before = min(len(master.cycles), len(slave.cycles))
     lag = np.abs(apart[:before]).max(initial=0.0) if before else 0.0
-    reaction = 2 * machine.block_cycles * machine.cycle_time_us * 1e-6
+    behind = abs(link.factor) * np.abs(master.set_position - master.actual_position[: len(master.cycles)])
+    reaction = (2 * machine.block_cycles + 1) * machine.cycle_time_us * 1e-6
     leading = [longest_ramp(master, link.master, machine)]
     if above is not None:
         leading.append(abs(above.factor) * longest_ramp(found[above.master], above.master, machine))
     following = longest_ramp(slave, link.slave, machine)
     ramps = max(abs(abs(link.factor) * ramp - following) for ramp in leading)
-    return float(np.abs(apart).max()), float(lag + fastest * reaction + ramps)
+    return float(np.abs(apart).max()), float(lag + behind[:before].max(initial=0.0) + fastest * reaction + ramps)
 
 
 def longest_ramp(track: Track, axis: str, machine: MachineParameters) -> float:
