@@ -43,7 +43,7 @@ from cnc_ptp.commands.run.options import (
     take_changes,
     take_recorder,
 )
-from cnc_ptp.commands.run.web_options import web_options
+from cnc_ptp.commands.run.web_options import take_web, web_options
 from cnc_ptp.commands.run.web_users import web_users
 from cnc_ptp.number_range import POSITIVE, RATE
 from cnc_ptp.ros_arguments import client_namespace_option, ros_arguments
@@ -88,6 +88,7 @@ def simulate_command(**options: Any) -> None:
 @graph_options
 def run_command(**options: Any) -> None:
     """Run a machine as a ROS graph, one process per node."""
+    options["web"] = take_web(options)
     if options.pop("isolated"):
         from cnc_ptp.commands.run.isolated import isolate
 

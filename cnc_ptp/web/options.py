@@ -39,6 +39,21 @@ class WebOptions:
         host = "localhost" if self.host == HOST else f"[{self.host}]" if ":" in self.host else self.host
         return f"{scheme}://{host}:{self.port}"
 
+    @property
+    def words(self) -> list[str]:
+        """As options of `cnc_ptp web`."""
+        given = {
+            "--port": str(self.port),
+            "--host": self.host,
+            "--programs": self.programs,
+            "--tls-cert": self.certificate,
+            "--tls-key": self.key,
+            "--users": self.users,
+            "--machine": self.machine,
+        }
+        words = [word for option, value in given.items() if value is not None for word in (option, value)]
+        return words + [word for name in self.names for word in ("--name", name)]
+
 
 def require_packages() -> None:
     """Raises CncError 26230 where the packages of the web face are not installed."""

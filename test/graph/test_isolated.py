@@ -201,10 +201,28 @@ def test_an_ordinary_user(folder):
             "--isolated and --foxglove exclude each other: nobody outside reaches the stream.",
         ),
         (("--web-users", "users.yaml"), "--web-users needs --web."),
+        (("--web-host", "::1"), "--web-host needs --web."),
+        (("--web-name", "mill"), "--web-name needs --web."),
+        (("--web-tls-cert", "c.pem"), "--web-tls-cert needs --web."),
     ],
 )
 def test_options_that_do_not_go_together(folder, options, text):
     assert f"Error: {text}\n" in run("run", folder / "one.yaml", *options, expect=2).stderr
+
+
+@pytest.mark.parametrize("isolated", [(), ("--isolated",)])
+def test_pages_that_others_reach_are_refused_before_anything_is_started(folder, isolated):
+    words = ("run", folder / "one.yaml", "--web", unused_port(), *isolated)
+    done = run(*words, "--web-host", "0.0.0.0", "--web-tls-key", "key.pem", expect=2)
+    assert " ".join(done.stderr.split()) == (
+        "P-ERR-26232 web: 0.0.0.0 can be reached by others, and --web-tls-cert, --web-users are missing; "
+        "nothing was started; off loopback it needs TLS and users"
+    )
+    done = run(*words, "--web-tls-cert", "none.pem", "--web-tls-key", "none.pem", expect=2)
+    assert " ".join(done.stderr.split()) == (
+        "P-ERR-26247 web: certificate none.pem with key none.pem cannot be used: No such file or directory; "
+        "nothing was started"
+    )
 
 
 def test_users_of_the_pages_are_read_before_anything_is_started(folder):

@@ -2,10 +2,12 @@
 
 import asyncio
 import signal
+import ssl
 import time
 
 import psutil
 import pytest
+import trustme
 from aiohttp import ClientSession, CookieJar
 from aiohttp.test_utils import unused_port
 from graph_support import Running, small_machine, verified
@@ -148,9 +150,32 @@ def test_a_run_is_killed_and_its_server_ends(ros_domain, machine):
         run.end()
 
 
-def wait_for_server(run):
+def test_pages_of_a_run_with_tls_on_another_address(ros_domain, machine, folder):
+    """127.0.0.2 is an address of its own; who may log in does not matter there."""
+    authority, port = trustme.CA(), unused_port()
+    certificate, key = folder / "cert.pem", folder / "key.pem"
+    made = authority.issue_cert("127.0.0.2")
+    certificate.write_bytes(b"".join(blob.bytes() for blob in made.cert_chain_pems))
+    key.write_bytes(made.private_key_pem.bytes())
+    trusted = ssl.create_default_context()
+    authority.configure_trust(trusted)
+
+    async def status():
+        async with ClientSession(cookie_jar=CookieJar(unsafe=True)) as session:
+            return (await session.get(f"https://127.0.0.2:{port}", ssl=trusted)).status
+
+    words = ("--web-host", "127.0.0.2", "--web-tls-cert", str(certificate), "--web-tls-key", str(key))
+    run = Running(machine, "--composed", "--web", str(port), *words, "--stay")
+    try:
+        wait_for_server(run, f"pages: https://127.0.0.2:{port} ")
+        assert asyncio.run(status()) == 200
+    finally:
+        run.end()
+
+
+def wait_for_server(run, told="pages: "):
     """It has told its address."""
     for line in run.process.stdout:
-        if line.startswith("pages: "):
+        if line.startswith(told):
             return
     raise AssertionError("no server")

@@ -16,7 +16,7 @@ from cnc_ptp.ros_arguments import ros_arguments
 def isolate(options: Mapping[str, Any]) -> socket | None:
     """The socket of the pages if there are any; this process is isolated until its end.
 
-    Raises UsageError for a stream that nobody could reach, CncError 26214, 26215 (isolation), 26230, 26231 (pages).
+    Raises UsageError for a stream that nobody could reach, CncError 26214, 26215 (isolation), 26230 to 26232 (pages).
     """
     if options["foxglove"] is not None:
         raise click.UsageError("--isolated and --foxglove exclude each other: nobody outside reaches the stream.")

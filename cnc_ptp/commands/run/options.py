@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from cnc_ptp.commands.arguments import DIALECT, MACHINE, PROGRAM, RECORDING, SCENARIO, option_group
-from cnc_ptp.commands.run.web_options import web_port_option, web_users_option
+from cnc_ptp.commands.run.web_options import run_web_options
 from cnc_ptp.number_range import DURATION, PERCENT, POSITIVE, RATE, STATES_PER_SECOND
 from cnc_ptp.ros_arguments import namespace_option
 from cnc_ptp.start_options import start_options
@@ -52,8 +52,7 @@ graph_options = option_group(
         metavar="[PORT]",
         help="Stream the messages of a recording to Foxglove at ws://localhost:PORT; without PORT 8765.",
     ),
-    web_port_option,
-    web_users_option,
+    run_web_options,
     click.option("--isolated", is_flag=True, help="In a network of its own, that no other process reaches: enter."),
     click.option("--free-run", is_flag=True, help="As fast as all nodes follow, instead of in real time."),
     click.option("--composed", is_flag=True, help="All nodes in one process."),
@@ -157,8 +156,6 @@ def require_an_end(options: dict[str, Any]) -> None:
         raise click.UsageError("--stay and --duration exclude each other: --duration stays for that many seconds.")
     if options["stay"] and options["free_run"]:
         raise click.UsageError("--stay and --free-run exclude each other: a machine is commanded in real time.")
-    if options["web_users"] is not None and options["web"] is None:
-        raise click.UsageError("--web-users needs --web.")
 
 
 def require_variants(options: dict[str, Any]) -> None:

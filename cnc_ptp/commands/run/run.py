@@ -9,7 +9,7 @@ from rich.console import Console
 from cnc_ptp import KERNEL
 from cnc_ptp.channel.program_report import cut_off_notes, time_lines
 from cnc_ptp.commands.console import RUN_FAILED, print_faults, print_missing_folders, print_note_of_idle_run
-from cnc_ptp.commands.run.beside_run import RunFiles, WebBesideRun
+from cnc_ptp.commands.run.beside_run import WebBesideRun
 from cnc_ptp.commands.run.progress import RunProgress
 from cnc_ptp.machine.plc_file import check_plc
 from cnc_ptp.machine.run_entries import read_entries
@@ -23,6 +23,7 @@ from cnc_ptp.recording.node_figures import BLOCKS, CAME_TWICE, LOST_BLOCKS, foll
 from cnc_ptp.recording.on_demand import ENDED_EARLY
 from cnc_ptp.recording.overwriting import check_recording
 from cnc_ptp.recording.recorder_options import RecorderOptions
+from cnc_ptp.web.options import WebOptions
 
 
 def run(
@@ -41,16 +42,14 @@ def run(
     plc: str | None = None,
     recorder: RecorderOptions | None = None,
     foxglove: int | None = None,
-    web: int | None = None,
-    web_users: str | None = None,
+    web: WebOptions | None = None,
     listening: socket | None = None,
 ) -> int:
     """Runs the graph; prints a summary. Status 1 when a unit ended in error, a node died or the disk was full.
 
     `recorder`: None = without one.
     `stay`: until Ctrl-C, which is no error when everything is at a standstill. `strict`: status 1 also when a
-    command was refused. `web`: port of its pages, None = no pages; `web_users`: file of
-    their users; `listening`: a socket that has the port already.
+    command was refused. `web`: how its pages are served, None = no pages; `listening`: a socket that has their port.
     """
     check_recording(record, machine_file=machine, NC_program=program, scenario=scenario, PLC_file=plc)
     parameters = read_machine(machine)
@@ -74,7 +73,7 @@ def run(
         recorder=recorder,
         foxglove=foxglove,
     )
-    with WebBesideRun(web, RunFiles(machine, program, web_users), listening) as pages, RunProgress() as progress:
+    with WebBesideRun(web, listening) as pages, RunProgress() as progress:
 
         def show(monitor: RunMonitor) -> None:
             if monitor.cycle:

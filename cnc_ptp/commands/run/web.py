@@ -37,8 +37,8 @@ def web(
     `machine`: its file, beside which pages may write others; `listening`: descriptor of a socket that has the port.
     """
     require_packages()
-    require_secured(host, certificate, key, users)
     options = WebOptions(port, host, names, programs, certificate, key, users, machine)
+    require_secured(options)
     taken = listen(host, port) if listening is None else socket.socket(fileno=listening)
     os.nice(NICENESS)
     if listening is not None:

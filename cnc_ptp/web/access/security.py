@@ -7,6 +7,7 @@ import ssl
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.web.numbers import NO_CERTIFICATE, NOT_SECURED
+from cnc_ptp.web.options import WebOptions
 
 NOTHING = "nothing was started"
 
@@ -19,16 +20,19 @@ def is_loopback(host: str) -> bool:
         return host == "localhost"
 
 
-def require_secured(host: str, certificate: str | None, key: str | None, users: str | None) -> None:
-    """Raises CncError 26232 for an address that can be reached by others, without TLS or users."""
-    needed = {"--tls-cert": certificate, "--tls-key": key, "--users": users}
-    missing = [option for option, value in needed.items() if value is None]
-    if missing and not is_loopback(host):
+def require_secured(options: WebOptions, prefix: str = "--") -> None:
+    """Raises CncError 26232 for an address that can be reached by others, without TLS or users.
+
+    `prefix`: that of the options in the texts.
+    """
+    needed = {"tls-cert": options.certificate, "tls-key": options.key, "users": options.users}
+    missing = [f"{prefix}{option}" for option, value in needed.items() if value is None]
+    if missing and not is_loopback(options.host):
         verb = "is" if len(missing) == 1 else "are"
-        reason = f"web: {host} can be reached by others, and {', '.join(missing)} {verb} missing"
+        reason = f"web: {options.host} can be reached by others, and {', '.join(missing)} {verb} missing"
         raise CncError(NOT_SECURED, reason, f"{NOTHING}; off loopback it needs TLS and users")
-    if (certificate is None) != (key is None):
-        raise CncError(NOT_SECURED, "web: --tls-cert and --tls-key belong together", NOTHING)
+    if (options.certificate is None) != (options.key is None):
+        raise CncError(NOT_SECURED, f"web: {prefix}tls-cert and {prefix}tls-key belong together", NOTHING)
 
 
 def tls_context(certificate: str | None, key: str | None) -> ssl.SSLContext | None:
