@@ -32,7 +32,7 @@ BLOCKS_KEPT = 1000
 """Of a stream that nobody reads: ten seconds of blocks."""
 EVENTS_KEPT = 10_000
 LONGEST_WAY = 4
-"""Blocks after which a command of the PLC is with every unit that still tells of itself."""
+"""Blocks after which a command of the PLC is with every unit that is alive."""
 
 
 class Mailbox(Generic[Item]):

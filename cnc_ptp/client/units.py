@@ -100,7 +100,10 @@ class Plc(PlcCommands):
     """The PLC of the machine."""
 
     def emergency_stop(self, enabled: bool) -> Answer:
-        """As the command. A release has reached the units when this returns, so that resets may follow."""
+        """As the command. A release has reached the units when this returns, so that resets may follow.
+
+        enabled  on or off
+        """
         answer = super().emergency_stop(enabled)
         if not enabled:
             seen = self._session.link.seen

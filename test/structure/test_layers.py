@@ -10,7 +10,7 @@ import pytest
 PACKAGE = Path(__file__).parents[2] / "cnc_ptp"
 GENERATED = ("msg", "srv", "action")
 FLOORS = (
-    "compiled", "one_thread", "errors", "yaml_text", "long_text", "garbage", "catalogue", "motion", "parameters", "protocol", "control", "spindle", "kinematics", "nc", "path", "axis", "channel",
+    "compiled", "one_thread", "errors", "yaml_text", "long_text", "garbage", "plain_values", "catalogue", "motion", "parameters", "protocol", "control", "spindle", "kinematics", "nc", "path", "axis", "channel",
     "plc", "machine", "state", "wire", "recording", "plots", "commissioning", "sweep", "interrupt", "ros_arguments", "number_range", "start_options", "nodes", "client", "web", "commands",
     "cli", "__main__",
 )  # fmt: skip
