@@ -140,7 +140,7 @@ def await_end(graph: Graph, fault: Fault) -> str:
     if not graph.wait(END_PATIENCE):
         return "does not end"
     whole = fault.signal == HOLD or (fault.signal == TERM and fault.node == "recorder")
-    return "over" if whole and graph.process.returncode == 0 else "stopped"
+    return "over" if whole and graph.process.returncode == 0 and graph.summed_up else "stopped"
 
 
 def left_behind(graph: Graph, fault: Fault, outcome: str) -> Iterator[str]:

@@ -134,7 +134,10 @@ def torn(
     fastest = max(np.abs(slave.actual_velocity).max(), abs(link.factor) * np.abs(master.actual_velocity).max())
     before = min(len(master.cycles), len(slave.cycles))
     lag = np.abs(apart[:before]).max(initial=0.0) if before else 0.0
-    behind = abs(link.factor) * np.abs(master.set_position - master.actual_position[: len(master.cycles)])
+    both = min(len(master.set_position), len(master.actual_position))
+    behind = abs(link.factor) * np.abs(master.set_position[:both] - master.actual_position[:both])
+    if not slave.own_stop:
+        behind[:] = 0.0
     reaction = (2 * machine.block_cycles + 1) * machine.cycle_time_us * 1e-6
     leading = [longest_ramp(master, link.master, machine)]
     if above is not None:

@@ -51,6 +51,8 @@ class Group(click.Group):
     """Prints a refusal as one text and ends with status 2; no traceback. ROS arguments are its context's object."""
 
     command_class = Command
+    group_class = type
+    """Groups in it are of this kind too."""
 
     def main(self, args: Sequence[str] | None = None, *rest: Any, **options: Any) -> Any:
         words = sys.argv[1:] if args is None else list(args)

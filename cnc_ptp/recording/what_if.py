@@ -7,7 +7,7 @@ of the recording come at their cycles, whatever the changed run does.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
 
@@ -87,6 +87,8 @@ class WhatIf:
             own = self._own_commands(machine)
             self.given |= {(machine.next_cycle, command.target, command.command) for command in own}
             outputs = machine.changed_tick(by_unit([*self._recorded_commands(machine), *own]))
+            if self._other_program is not None:
+                self._other_program.take(outputs)
             self.running = [name for name, output in outputs.items() if is_running(output.block)]
             yield outputs
 
@@ -112,12 +114,22 @@ class WhatIf:
     def _program_that_runs(self) -> OtherProgram | None:
         """What brings the other program in where none is loaded after `begin`. Raises CncError 26157 without any."""
         program = self._change.program
-        loads = [record for records in self._commands.values() for record in records if record.command == "load"]
+        taken = [record for records in self._commands.values() for record in records if record.accepted]
+        loads = [record for record in taken if record.command == "load"]
         if program is None or any(record.cycle >= self.begin for record in loads):
             return None
         if not loads:
             raise CncError(NO_LOAD, "--program takes the place of a program, and none is loaded", NOTHING)
-        return OtherProgram(loads[-1].target, program)
+        later = {record.target for record in taken if record.command == "start" and record.cycle >= self.begin}
+        return OtherProgram([*dict.fromkeys(record.target for record in loads)], program, later)
+
+    @property
+    def not_come(self) -> str:
+        """Why the other program was not loaded; empty if it was, if it was refused, or if there is none."""
+        other = self._other_program
+        if other is None or other.has_come:
+            return ""
+        return f"the program does not come: {other.channel} has not come to rest before the end"
 
     def _at_begin(self) -> OfflineMachine:
         """The machine as it was recorded before `begin`, with a PLC that answers as the recorded one did."""
@@ -160,29 +172,54 @@ class WhatIf:
         if change.override is not None and command.command == "set_override" and command.target in self._old.channels:
             return None
         if change.program is not None and command.command == "load":
-            self.given.add((record.cycle, command.target, "load"))
+            if record.accepted:
+                self.given.add((record.cycle, command.target, "load"))
             return Command(command.target, "load", dict(change.program), command.id)
         return command
 
 
 class OtherProgram:
-    """Another program in the place of the one that runs: reset, and when the path stands load and start."""
+    """Another program in the place of the one that runs: reset, when the path stands load, and start if that was taken.
 
-    def __init__(self, channel: str, program: Mapping[str, Any]) -> None:
+    `channels`: those for which programs were loaded, in this order; the first one that runs gets it, or the first one.
+    `started_later`: channels that get a recorded start later on.
+    """
+
+    def __init__(self, channels: Sequence[str], program: Mapping[str, Any], started_later: Collection[str]) -> None:
         """`program`: arguments of `load`."""
-        self.channel = channel
-        self._program = dict(program)
-        self._is_reset = self._is_started = False
+        self.channel = ""
+        self._channels, self._program, self._started_later = channels, dict(program), started_later
+        self._given = ""
+        self._ends = self._ends_with_load = False
+
+    @property
+    def has_come(self) -> bool:
+        """It was started, or is there to be started, or was refused."""
+        return self._ends
 
     def commands(self, blocks: Mapping[str, CycleBlock]) -> list[Command]:
         """Those of the next block; `blocks`: the newest of all units."""
-        if self._is_started:
+        if self._ends:
             return []
-        if self.channel in blocks and is_running(blocks[self.channel]):
-            give_reset, self._is_reset = not self._is_reset, True
-            return [Command(self.channel, "reset")] if give_reset else []
-        self._is_started = True
-        return [Command(self.channel, "load", self._program), Command(self.channel, "start")]
+        if not self.channel:
+            running = [name for name in self._channels if name in blocks and is_running(blocks[name])]
+            self.channel = [*running, *self._channels][0]
+            self._ends_with_load = not running and self.channel in self._started_later
+        if self._given == "load":
+            return self._give("start")
+        if self.channel not in blocks or not is_running(blocks[self.channel]):
+            return self._give("load", self._program)
+        return [] if self._given == "reset" else self._give("reset")
+
+    def _give(self, command: str, arguments: Mapping[str, Any] | None = None) -> list[Command]:
+        self._given = command
+        self._ends = command == "start" or (command == "load" and self._ends_with_load)
+        return [Command(self.channel, command, dict(arguments or {}))]
+
+    def take(self, outputs: Outputs) -> None:
+        """What became of them: without its program nothing is started."""
+        records = outputs[self.channel].records if self.channel else []
+        self._ends = self._ends or any(record.command == "load" and not record.accepted for record in records)
 
 
 RESTING: Final = (int(ChannelStateCode.IDLE), int(ChannelStateCode.READY))

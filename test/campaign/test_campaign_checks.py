@@ -108,10 +108,13 @@ def test_a_pair_that_comes_apart_is_measured():
 
 def test_a_drive_that_brakes_on_its_own_does_not_catch_up():
     """Seed 38, number 339: the master makes up for what it was behind, 3 mm here; the drive of the slave does not."""
-    made = recorded(rows(ramp()), rows(ramp()))
+    stop = DriveStop("y", 200, np.full(3, ramp().sum() * CYCLE), np.zeros(3))
+    made = recorded(rows(ramp()), rows(ramp()), [stop])
     made.states["/x/state"]["actual_position"][:150] -= 3.0
     _, permitted = motion.torn(made, Link("x", "y", 1.0), MACHINE)
     assert permitted == pytest.approx(2.1 + 3.0 + 3.0), "apart before, and made up for"
+    made.drive_stops = [DriveStop("x", 100, np.full(3, 1.0), np.zeros(3))]  # blocks were recorded after it
+    assert motion.torn(made, Link("x", "y", 1.0), MACHINE)[1] < 2.1 + 3.0 + 3.0 + 10.0
 
 
 def test_a_master_may_come_to_rest_on_the_ramp_of_its_own_master():

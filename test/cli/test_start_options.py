@@ -79,3 +79,10 @@ def test_a_start_point_as_options():
     assert [*start_words(StartPoint(line=7))] == ["--start-line", "7", "--start-pass", "1"]
     words = ["--start-block", "40", "--start-in", "side.nc", "--start-pass", "3"]
     assert [*start_words(StartPoint(0, 40, "side.nc", 3))] == words
+
+
+def test_a_value_given_twice_to_a_command_of_a_group():
+    status, output = called("users", "add", "otto", "--role", "viewer", "--role", "operator", "--users", "u.yaml")
+    assert status == 2 and "--role is given 2 times, and takes one value." in output
+    status, output = called("lists", "export", MILL, "-o", "a", "-o", "b")
+    assert status == 2 and "is given 2 times, and takes one value." in output

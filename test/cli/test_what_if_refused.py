@@ -6,6 +6,7 @@ from click.testing import CliRunner, Result
 from machine_support import ROOT
 
 from cnc_ptp import cli
+from cnc_ptp.recording.reader import read_recording
 
 PTP = ROOT / "config" / "ptp.yaml"
 STORY = """
@@ -50,3 +51,45 @@ def test_a_change_that_the_machine_refuses_is_status_1(tmp_path: Path) -> None:
     result = call("replay", path, "--program", other)
     assert result.exit_code == 1
     assert result.stderr.startswith(f"error: load to channel at 0 s is refused: {other} line 1 column 15 ")
+
+
+MILL = ROOT / "config" / "mill.yaml"
+
+
+def recorded_run(folder: Path, scenario: str = "") -> Path:
+    lines, story, path = folder / "lines.nc", folder / "story.yaml", folder / "run.mcap"
+    lines.write_text("G01 X50 F2400\nX0\nM30\n")
+    (folder / "bad.nc").write_text("G01 X50 F2400 Q\n")
+    (folder / "other.nc").write_text("G01 X20 F2400\nM30\n")
+    story.write_text(scenario or "[]")
+    given = ("--scenario", story) if scenario else ("--program", lines)
+    assert call("simulate", MILL, *given, "--duration", 4, "--record", path).exit_code == 0
+    return path
+
+
+def given_to_channel(path: Path) -> list[tuple[str, bool]]:
+    return [(record.command, record.accepted) for record in read_recording(path).commands if record.target == "channel"]
+
+
+def test_without_the_other_program_nothing_is_started(tmp_path: Path) -> None:
+    run, new = recorded_run(tmp_path), tmp_path / "new.mcap"
+    assert call("replay", run, "--from", 0.5, "--program", tmp_path / "bad.nc", "-o", new).exit_code == 1
+    assert given_to_channel(new) == [("reset", True), ("load", False)]
+
+
+def test_a_program_that_is_started_later_is_loaded_only(tmp_path: Path) -> None:
+    story = f"""
+- {{at: 0.2, to: channel, do: load, program: {tmp_path / "lines.nc"}}}
+- {{at: 2.0, to: channel, do: start}}
+"""
+    run, new = recorded_run(tmp_path, story), tmp_path / "new.mcap"
+    result = call("replay", run, "--from", 1, "--program", tmp_path / "other.nc", "-o", new)
+    assert result.exit_code == 0, result.output
+    assert given_to_channel(new) == [("load", True), ("start", True)]
+
+
+def test_a_program_that_does_not_come_is_told(tmp_path: Path) -> None:
+    run = recorded_run(tmp_path)
+    result = call("replay", run, "--from", 0.5, "--to", 0.54, "--program", tmp_path / "other.nc")
+    assert result.exit_code == 1
+    assert "error: the program does not come: channel has not come to rest before the end\n" in result.stderr

@@ -94,10 +94,11 @@ def test_a_function_block_of_a_unit_that_does_not_have_its_command(m: Machine) -
     )
 
 
-def test_a_coupling_without_a_master(m: Machine) -> None:
+@pytest.mark.parametrize("inputs", [{}, {"master": None}, {"master": 5}])
+def test_a_coupling_without_a_master(m: Machine, inputs: dict[str, object]) -> None:
     gear = MC_GearIn(m.x)
     for _ in m.plc_cycles(0.02):
-        gear(True)
+        gear(True, **inputs)
     assert (gear.error, gear.busy, gear.error_id) == (True, False, 22001)
     assert gear.error_text == "axis x: MC_GearIn refused: master is not given; nothing was changed"
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from cnc_ptp.commands.group import Group
 from cnc_ptp.web.options import require_packages
 
 ROLES = ("viewer", "operator", "commissioner")
@@ -16,7 +17,7 @@ ROLE = click.option("--role", type=click.Choice(ROLES), required=True, help="Wha
 NAME = click.argument("name")
 
 
-@click.group("users")
+@click.group("users", cls=Group)
 def web_users() -> None:
     """Users of the pages: add, remove, list; tokens of machines."""
     require_packages()

@@ -112,6 +112,8 @@ def compute(run: WhatIf, recorded: RunInputs, path: str) -> Refused:
                     refused.of_change.append(text)
                 elif what not in known:
                     refused.of_recording.append(text)
+    if run.not_come:
+        refused.of_change.append(run.not_come)
     return refused
 
 

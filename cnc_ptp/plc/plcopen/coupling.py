@@ -18,6 +18,11 @@ SPEED_BAND = 1e-3
 """Part of the speed of a master by which its slave may differ, as P-AXIS-00217 has it without a value."""
 
 
+def name_of(master: Master | None) -> str:
+    """Empty for what is no unit."""
+    return master if isinstance(master, str) else str(getattr(master, "name", ""))
+
+
 class SlaveBlock(EndlessBlock):
     """A block that makes its unit a slave."""
 
@@ -29,7 +34,7 @@ class SlaveBlock(EndlessBlock):
 
     def _couple(self, command: str, master: Master, **arguments: Any) -> None:
         self._master_unit = None if isinstance(master, str) else master
-        self._master = master if isinstance(master, str) else master.name
+        self._master = name_of(master)
         if not self._master:
             block = type(self).__name__
             self._fail(BAD_ARGUMENT, f"{self._where}: {block} refused: master is not given; nothing was changed")
@@ -96,7 +101,7 @@ class MC_GearIn(SlaveBlock):
             self._gear_axis(master, self._ratio)
 
     def _gear_axis(self, master: Master, factor: float) -> None:
-        block, name = self.unit.block, master if isinstance(master, str) else master.name
+        block, name = self.unit.block, name_of(master)
         engaged = isinstance(block, AxisBlock) and block.state[-1] == AxisStateCode.SYNCHRONIZED_MOTION
         if engaged and isinstance(block, AxisBlock) and block.master == name:
             self._master, self._coupling_job = name, block.job
