@@ -110,12 +110,17 @@ def run(fault: Fault, folder: Path, *, domain: int) -> Row:
         row.outcome = await_end(graph, fault)
         row.seconds = round(time.monotonic() - happened, 2)
         row.problems += left_behind(graph, fault, row.outcome)
-        computed = happened - begin - graph.lateness  # a machine that is behind has not yet come to that cycle
+        computed = happened - begin - lateness_before(fault, graph.lateness)
         written = int(computed * 1e6 / read_machine(str(case.machine)).cycle_time_us)
         check_recording(row, case, recording, written)
     finally:
         graph.end()
     return row
+
+
+def lateness_before(fault: Fault, largest: float) -> float:
+    """Seconds by which the machine may have been behind the clock when the fault came; a hold makes it late itself."""
+    return max(0.0, largest - fault.hold)
 
 
 def strike(process: psutil.Process, fault: Fault) -> None:

@@ -75,9 +75,8 @@ def problems(
         if len(track.cycles) and np.any(np.diff(track.cycles.astype(np.int64)) != 1):
             yield f"{unit}: cycles are missing"
         stop = next((each for each in recorded.drive_stops if each.unit == unit), None)
-        late = 0 if stop is None else int(track.cycles[-1]) + 1 - stop.first_cycle
-        if late < 0 or late > (machine.block_cycles if unit in stopped_in else 0):
-            assert stop is not None
+        permitted = machine.block_cycles if unit in stopped_in else 0
+        if stop is not None and not 0 <= int(track.cycles[-1]) + 1 - stop.first_cycle <= permitted:
             yield f"{unit}: the drive stops in cycle {stop.first_cycle}, the last setpoint is of {track.cycles[-1]}"
         if ended and stop is None and track.set_velocity[-1] != 0.0:
             yield f"{unit}: still moves at the end with {track.set_velocity[-1]:.3f}"
@@ -134,17 +133,20 @@ def torn(
     fastest = max(np.abs(slave.actual_velocity).max(), abs(link.factor) * np.abs(master.actual_velocity).max())
     before = min(len(master.cycles), len(slave.cycles))
     lag = np.abs(apart[:before]).max(initial=0.0) if before else 0.0
-    both = min(len(master.set_position), len(master.actual_position))
-    behind = abs(link.factor) * np.abs(master.set_position[:both] - master.actual_position[:both])
-    if not slave.own_stop:
-        behind[:] = 0.0
+    behind = abs(link.factor) * largest_lag(master, before) if slave.own_stop else 0.0
     reaction = (2 * machine.block_cycles + 1) * machine.cycle_time_us * 1e-6
     leading = [longest_ramp(master, link.master, machine)]
     if above is not None:
         leading.append(abs(above.factor) * longest_ramp(found[above.master], above.master, machine))
     following = longest_ramp(slave, link.slave, machine)
     ramps = max(abs(abs(link.factor) * ramp - following) for ramp in leading)
-    return float(np.abs(apart).max()), float(lag + behind[:before].max(initial=0.0) + fastest * reaction + ramps)
+    return float(np.abs(apart).max()), float(lag + behind + fastest * reaction + ramps)
+
+
+def largest_lag(track: Track, count: int) -> float:
+    """The largest following error of the first cycles, mm (deg)."""
+    count = min(count, len(track.actual_position))
+    return float(np.abs(track.set_position[:count] - track.actual_position[:count]).max(initial=0.0))
 
 
 def longest_ramp(track: Track, axis: str, machine: MachineParameters) -> float:

@@ -20,26 +20,34 @@ class PlcCycles:
         self._end = None if duration is None else session.time + duration
 
     def __iter__(self) -> Iterator[int]:
-        link = self._session.link
         try:
             while not self._is_over:
-                cycle = link.seen.cycle
-                link.hold()
+                cycle = self._session.link.seen.cycle
+                self._hold()
                 yield cycle
+                self._session.in_plc_cycle = False
                 self._session.run(self._next(cycle))
         finally:
-            link.release()
+            self._release()
 
     async def __aiter__(self) -> AsyncIterator[int]:
-        link = self._session.link
         try:
             while not self._is_over:
-                cycle = link.seen.cycle
-                link.hold()
+                cycle = self._session.link.seen.cycle
+                self._hold()
                 yield cycle
+                self._session.in_plc_cycle = False
                 await self._session.run_async(self._next(cycle))
         finally:
-            link.release()
+            self._release()
+
+    def _hold(self) -> None:
+        self._session.in_plc_cycle = True
+        self._session.link.hold()
+
+    def _release(self) -> None:
+        self._session.in_plc_cycle = False
+        self._session.link.release()
 
     @property
     def _is_over(self) -> bool:

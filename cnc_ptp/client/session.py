@@ -23,6 +23,8 @@ class Session:
     def __init__(self, link: Link) -> None:
         self.link = link
         self.closed = False
+        self.in_plc_cycle = False
+        """A cycle of `plc_cycles` is served: no time passes in it."""
         self._answering: Answering | None = None
         self._dispatches = False
 

@@ -102,10 +102,12 @@ class Plc(PlcCommands):
     def emergency_stop(self, enabled: bool) -> Answer:
         """As the command. A release has reached the units when this returns, so that resets may follow.
 
+        In a cycle of `plc_cycles`, where no time passes, it reaches them with the next one.
+
         enabled  on or off
         """
         answer = super().emergency_stop(enabled)
-        if not enabled:
+        if not enabled and not self._session.in_plc_cycle:
             seen = self._session.link.seen
             arrived = self._session.until(
                 lambda: seen.has_arrived(answer.cycle), None, "plc: emergency_stop", may_stall=True

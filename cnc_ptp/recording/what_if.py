@@ -7,7 +7,7 @@ of the recording come at their cycles, whatever the changed run does.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
 
@@ -18,7 +18,7 @@ from cnc_ptp.parameters.changed import changed_text, read_changes
 from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import ChannelBlock, Command, CommandRecord, CycleBlock
-from cnc_ptp.protocol.channel_states import ChannelStateCode
+from cnc_ptp.protocol.channel_states import IN_PROGRAM, ChannelStateCode
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.recording.checkpoints import state_before
 from cnc_ptp.recording.computed_again import by_unit, commands_by_cycle, computed_again, fresh_machine, refused_again
@@ -66,7 +66,9 @@ class WhatIf:
         self.begin = self._block_at(change.begin)
         self.end = recorded.end if change.end is None else self._end_at(change.end)
         self._commands = commands_by_cycle(recorded.commands, self._old)
-        self._other_program = self._program_that_runs()
+        self._to_replace = self._channels_to_replace()
+        self.not_replaced = ""
+        """Why the other program has not come in; empty if it has, if it was refused, or if there is none."""
         self.note = ""
         self.running: list[str] = []
         """Channels whose program has not ended so far."""
@@ -83,13 +85,14 @@ class WhatIf:
             changed = fresh_machine(self.machine)
             changed.go_on_from(machine.next_cycle, runners, blocks)
             machine = changed
+        replacement = self._replacement(machine.parts[1])
+        replacing = next(replacement)
         while machine.next_cycle < self.end:
-            own = self._own_commands(machine)
+            own = [*self._own_commands(machine.next_cycle), *replacing]
             self.given |= {(machine.next_cycle, command.target, command.command) for command in own}
             outputs = machine.changed_tick(by_unit([*self._recorded_commands(machine), *own]))
-            if self._other_program is not None:
-                self._other_program.take(outputs)
-            self.running = [name for name, output in outputs.items() if is_running(output.block)]
+            replacing = replacement.send(outputs)
+            self.running = [name for name, output in outputs.items() if is_in_program(output.block)]
             yield outputs
 
     def _end_at(self, seconds: float) -> int:
@@ -111,25 +114,43 @@ class WhatIf:
         count = self._old.block_cycles
         return round(seconds / self._cycle_time) // count * count
 
-    def _program_that_runs(self) -> OtherProgram | None:
-        """What brings the other program in where none is loaded after `begin`. Raises CncError 26157 without any."""
-        program = self._change.program
-        taken = [record for records in self._commands.values() for record in records if record.accepted]
-        loads = [record for record in taken if record.command == "load"]
-        if program is None or any(record.cycle >= self.begin for record in loads):
-            return None
+    def _channels_to_replace(self) -> list[str]:
+        """Those for which a program was loaded, where none is loaded after `begin`. Raises CncError 26157."""
+        if self._change.program is None:
+            return []
+        loads = self._taken("load")
         if not loads:
             raise CncError(NO_LOAD, "--program takes the place of a program, and none is loaded", NOTHING)
-        later = {record.target for record in taken if record.command == "start" and record.cycle >= self.begin}
-        return OtherProgram([*dict.fromkeys(record.target for record in loads)], program, later)
+        late = any(record.cycle >= self.begin for record in loads)
+        return [] if late else [*dict.fromkeys(record.target for record in loads)]
 
-    @property
-    def not_come(self) -> str:
-        """Why the other program was not loaded; empty if it was, if it was refused, or if there is none."""
-        other = self._other_program
-        if other is None or other.has_come:
-            return ""
-        return f"the program does not come: {other.channel} has not come to rest before the end"
+    def _taken(self, command: str) -> list[CommandRecord]:
+        """The recorded commands of this name that were not refused."""
+        records = [record for records in self._commands.values() for record in records]
+        return [record for record in records if record.command == command and record.accepted]
+
+    def _replacement(self, blocks: Mapping[str, CycleBlock]) -> Generator[list[Command], Outputs, None]:
+        """Reset, when the path stands load, and start if that was taken: the commands of each block, without an end.
+
+        The first channel that is not at rest gets the program, or the first one; of a channel at rest that is started
+        by the recording later on it is only loaded. `blocks`: the newest of all units; then the outputs are sent.
+        """
+        if self._to_replace:
+            active = [name for name in self._to_replace if name in blocks and not is_at_rest(blocks[name])]
+            channel = [*active, *self._to_replace][0]
+            if active:
+                outputs = yield [Command(channel, "reset")]
+                while not is_at_rest(block := outputs[channel].block):
+                    self.not_replaced = f"the program is not loaded: {channel} is in state {state_of(block).name}"
+                    outputs = yield []
+            self.not_replaced = ""
+            outputs = yield [Command(channel, "load", dict(self._change.program or {}))]
+            loaded = all(record.accepted for record in outputs[channel].records if record.command == "load")
+            is_started_later = any(each.target == channel and each.cycle >= self.begin for each in self._taken("start"))
+            if loaded and (active or not is_started_later):
+                yield [Command(channel, "start")]
+        while True:
+            yield []
 
     def _at_begin(self) -> OfflineMachine:
         """The machine as it was recorded before `begin`, with a PLC that answers as the recorded one did."""
@@ -152,17 +173,15 @@ class WhatIf:
         records = refused_again(machine, self._commands.get(machine.next_cycle, ()))
         return [command for record in records if (command := self._changed(record)) is not None]
 
-    def _own_commands(self, machine: OfflineMachine) -> list[Command]:
-        """What the change itself commands in the next block."""
-        given, cycle = [], machine.next_cycle
+    def _own_commands(self, cycle: int) -> list[Command]:
+        """Override and further commands of the change in the block that begins with `cycle`."""
+        given = []
         if cycle == self.begin and self._change.override is not None:
             given += [Command(name, "set_override", {"percent": self._change.override}) for name in self._old.channels]
         end = cycle + self._old.block_cycles
         for entry in self._change.commands:
             if max(cycle, self.begin) <= round(entry.at / self._cycle_time) < end:
                 given.append(entry.command)
-        if self._other_program is not None:
-            given += self._other_program.commands(machine.parts[1])
         return given
 
     def _changed(self, record: CommandRecord) -> Command | None:
@@ -178,53 +197,17 @@ class WhatIf:
         return command
 
 
-class OtherProgram:
-    """Another program in the place of the one that runs: reset, when the path stands load, and start if that was taken.
-
-    `channels`: those for which programs were loaded, in this order; the first one that runs gets it, or the first one.
-    `started_later`: channels that get a recorded start later on.
-    """
-
-    def __init__(self, channels: Sequence[str], program: Mapping[str, Any], started_later: Collection[str]) -> None:
-        """`program`: arguments of `load`."""
-        self.channel = ""
-        self._channels, self._program, self._started_later = channels, dict(program), started_later
-        self._given = ""
-        self._ends = self._ends_with_load = False
-
-    @property
-    def has_come(self) -> bool:
-        """It was started, or is there to be started, or was refused."""
-        return self._ends
-
-    def commands(self, blocks: Mapping[str, CycleBlock]) -> list[Command]:
-        """Those of the next block; `blocks`: the newest of all units."""
-        if self._ends:
-            return []
-        if not self.channel:
-            running = [name for name in self._channels if name in blocks and is_running(blocks[name])]
-            self.channel = [*running, *self._channels][0]
-            self._ends_with_load = not running and self.channel in self._started_later
-        if self._given == "load":
-            return self._give("start")
-        if self.channel not in blocks or not is_running(blocks[self.channel]):
-            return self._give("load", self._program)
-        return [] if self._given == "reset" else self._give("reset")
-
-    def _give(self, command: str, arguments: Mapping[str, Any] | None = None) -> list[Command]:
-        self._given = command
-        self._ends = command == "start" or (command == "load" and self._ends_with_load)
-        return [Command(self.channel, command, dict(arguments or {}))]
-
-    def take(self, outputs: Outputs) -> None:
-        """What became of them: without its program nothing is started."""
-        records = outputs[self.channel].records if self.channel else []
-        self._ends = self._ends or any(record.command == "load" and not record.accepted for record in records)
+def state_of(block: CycleBlock) -> ChannelStateCode:
+    """Of a channel, at the end of its block."""
+    assert isinstance(block, ChannelBlock)
+    return ChannelStateCode(block.state[-1])
 
 
-RESTING: Final = (int(ChannelStateCode.IDLE), int(ChannelStateCode.READY))
+def is_at_rest(block: CycleBlock) -> bool:
+    """A channel that takes another program."""
+    return state_of(block) in (ChannelStateCode.IDLE, ChannelStateCode.READY)
 
 
-def is_running(block: CycleBlock) -> bool:
+def is_in_program(block: CycleBlock) -> bool:
     """A channel whose program has not ended."""
-    return isinstance(block, ChannelBlock) and int(block.state[-1]) not in RESTING
+    return isinstance(block, ChannelBlock) and state_of(block) in IN_PROGRAM

@@ -8,6 +8,7 @@ import pytest
 
 from campaign import kills, load, motion
 from campaign.cases import Link
+from campaign.graph import Graph, size_of
 from campaign.kills import HOLD, KILL, TERM, Fault, Row
 from campaign.load import case_of
 from campaign.table import summary, table
@@ -113,8 +114,41 @@ def test_a_drive_that_brakes_on_its_own_does_not_catch_up():
     made.states["/x/state"]["actual_position"][:150] -= 3.0
     _, permitted = motion.torn(made, Link("x", "y", 1.0), MACHINE)
     assert permitted == pytest.approx(2.1 + 3.0 + 3.0), "apart before, and made up for"
-    made.drive_stops = [DriveStop("x", 100, np.full(3, 1.0), np.zeros(3))]  # blocks were recorded after it
-    assert motion.torn(made, Link("x", "y", 1.0), MACHINE)[1] < 2.1 + 3.0 + 3.0 + 10.0
+
+
+def test_blocks_that_were_recorded_after_the_stop_of_a_drive_count_for_nothing():
+    """The master's drive has done what its blocks say, and the slave's too: nothing changes."""
+    link, stops = Link("x", "y", 1.0), []
+    made = recorded(rows(ramp()), rows(ramp()))
+    before = motion.torn(made, link, MACHINE)
+    for unit in ("x", "y"):
+        states = made.states[f"/{unit}/state"]
+        stops.append(DriveStop(unit, 100, states["actual_position"][100:190], states["actual_velocity"][100:190]))
+    made.drive_stops = stops
+    apart, permitted = motion.torn(made, link, MACHINE)
+    assert (apart, permitted) == (before[0], pytest.approx(before[1]))
+
+
+def test_what_a_run_has_told_of_itself(tmp_path):
+    """Seed 38, number 217: 3.4 s late, and held up for 4.7 s; number 228: 3.1 s late by itself."""
+    graph = Graph.__new__(Graph)
+    graph._log = tmp_path / "run.log"
+    graph._log.write_text("machine time 7.220 s\nblock lateness p50 2005.8 ms, p99 3125.1 ms, largest 3145.6 ms\n")
+    assert graph.summed_up and graph.lateness == pytest.approx(3.1456)
+    assert kills.lateness_before(Fault("thread", "clock", KILL, 0.0, 11.0), graph.lateness) == graph.lateness
+    assert kills.lateness_before(Fault("program", "channel", HOLD, 4.665, 11.1), 3.39) == 0.0
+    graph._log.write_text("machine time 7.220 s\nfailed: P-ERR-26104 node 'x'\n")
+    assert not graph.summed_up and graph.lateness == 0.0
+
+
+def test_a_file_that_is_only_asked_for_is_no_start(tmp_path):
+    """Seed 38, number 216: the recorder was killed before the first cycle."""
+    file = tmp_path / "run.mcap"
+    assert size_of(file) == 0
+    file.touch()
+    assert size_of(file) == 0
+    file.write_bytes(b"begun")
+    assert size_of(file) == 5
 
 
 def test_a_master_may_come_to_rest_on_the_ramp_of_its_own_master():

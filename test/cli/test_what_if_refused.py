@@ -88,8 +88,36 @@ def test_a_program_that_is_started_later_is_loaded_only(tmp_path: Path) -> None:
     assert given_to_channel(new) == [("load", True), ("start", True)]
 
 
-def test_a_program_that_does_not_come_is_told(tmp_path: Path) -> None:
+def test_a_path_that_does_not_stand_before_the_end_is_told(tmp_path: Path) -> None:
     run = recorded_run(tmp_path)
     result = call("replay", run, "--from", 0.5, "--to", 0.54, "--program", tmp_path / "other.nc")
     assert result.exit_code == 1
-    assert "error: the program does not come: channel has not come to rest before the end\n" in result.stderr
+    assert result.stderr == "error: the program is not loaded: channel is in state STOPPING\n"
+
+
+def test_of_two_channels_the_one_that_runs_gets_the_program(tmp_path: Path) -> None:
+    """Both run: the first one, for which simulate has loaded a program."""
+    spindles, run, new = ROOT / "examples" / "spindles", tmp_path / "run.mcap", tmp_path / "new.mcap"
+    words = ("--program", spindles / "channel1.nc", "--scenario", spindles / "two_channels_start.yaml", "--record", run)
+    assert call("simulate", spindles / "two_channels.yaml", *words).exit_code == 0
+    (tmp_path / "other.nc").write_text("G04 0.1\nM30\n")
+    assert call("replay", run, "--from", 0.5, "--program", tmp_path / "other.nc", "-o", new).exit_code == 0
+    given = [
+        (record.target, record.command)
+        for record in read_recording(new).commands
+        if record.command in ("reset", "load")
+    ]
+    assert given == [("channel1", "reset"), ("channel1", "load")]
+
+
+def test_a_recorded_load_that_was_refused_is_none(tmp_path: Path) -> None:
+    """At 1 s the program runs: the other one comes in at 0.5 s all the same."""
+    story = f"""
+- {{at: 0, to: channel, do: load, program: {tmp_path / "lines.nc"}}}
+- {{at: 0, to: channel, do: start}}
+- {{at: 1.0, to: channel, do: load, program: {tmp_path / "other.nc"}}}
+"""
+    run, new = recorded_run(tmp_path, story), tmp_path / "new.mcap"
+    result = call("replay", run, "--from", 0.5, "--program", tmp_path / "other.nc", "-o", new)
+    assert result.exit_code == 0, result.output
+    assert given_to_channel(new)[:3] == [("reset", True), ("load", True), ("start", True)]

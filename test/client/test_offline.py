@@ -123,6 +123,21 @@ def test_resets_may_follow_the_release_of_an_emergency_stop(m: Machine) -> None:
     assert m.x.state.error_id == 0
 
 
+def test_no_time_passes_in_a_plc_cycle_that_releases_an_emergency_stop(m: Machine) -> None:
+    m.plc.emergency_stop(True)
+    cycles = []
+    for cycle in m.plc_cycles(0.03):
+        m.plc.emergency_stop(False)
+        cycles.append((cycle, m.cycle))
+    assert cycles == [(10, 10), (20, 20), (30, 30)]
+
+
+@pytest.mark.parametrize("make", [MC_MoveAbsolute, MC_Power])
+def test_the_plc_is_no_unit_of_a_function_block(m: Machine, make: Callable[[object], object]) -> None:
+    number, text, _ = refusal(lambda: make(m.plc))
+    assert number == 22001 and text.startswith(f"{make.__name__}: unit = <plc plc> is no axis, spindle or channel")
+
+
 def test_a_job_whose_end_is_not_seen_is_an_error_of_its_block(m: Machine) -> None:
     move = MC_MoveAbsolute(m.x)
     for cycle in m.plc_cycles():

@@ -26,29 +26,17 @@ class WebBesideRun:
         self._options = options
         self._socket = listening
         self._process: subprocess.Popen[bytes] | None = None
-        if options is not None:
-            self._socket = listening or listen_for_pages(options)
-            if options.users is not None:
-                from cnc_ptp.web.access.users import Users
-
-                Users(options.users)  # what is wrong with it is reported before anything is started
+        if options is not None and listening is None:
+            self._socket = listen_for_pages(options)
 
     def begin(self) -> None:
         """The clock ticks: its process starts, and prints the address."""
         if self._options is None or self._socket is None or self._process is not None:
             return
         number = self._socket.fileno()
+        words = [*self._options.words, "--listening", str(number), *ros_arguments().words]
         self._process = subprocess.Popen(
-            [
-                sys.executable,
-                "-m",
-                "cnc_ptp",
-                "web",
-                *self._options.words,
-                "--listening",
-                str(number),
-                *ros_arguments().words,
-            ],
+            [sys.executable, "-m", "cnc_ptp", "web", *words],
             pass_fds=[number],
             stdin=subprocess.PIPE,  # closed when this process ends, however: then it ends too
             start_new_session=True,  # Ctrl-C is for the run, which ends it in order
@@ -74,12 +62,18 @@ class WebBesideRun:
 
 
 def listen_for_pages(options: WebOptions) -> socket.socket:
-    """The socket of the pages. Raises CncError 26230, 26231, 26232 (not secured), 26247 (certificate)."""
+    """The socket of the pages; what is wrong with them is reported before anything is started.
+
+    Raises CncError 26230, 26231, 26232 (not secured), 26246 (users), 26247 (certificate).
+    """
     require_packages()
     from cnc_ptp.web.access.security import require_secured, tls_context
+    from cnc_ptp.web.access.users import Users
 
     require_secured(options, "--web-")
-    tls_context(options.certificate, options.key)  # as the users
+    tls_context(options.certificate, options.key)
+    if options.users is not None:
+        Users(options.users)
     return listen(options.host, options.port)
 
 

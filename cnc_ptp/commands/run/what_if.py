@@ -40,7 +40,7 @@ def what_if(
 ) -> int:
     """Computes, records to `output`; prints the difference if there is no output, or `diff` or a page asks for it.
 
-    Status 1 where the machine has refused what was to be changed.
+    Status 1 where the machine has refused what was to be changed, or the other program has not come in.
     """
     check_recording(output, recording=recording, NC_program=program, commands=commands)
     check_diff_page(page, recording=recording, NC_program=program, commands=commands)
@@ -112,8 +112,8 @@ def compute(run: WhatIf, recorded: RunInputs, path: str) -> Refused:
                     refused.of_change.append(text)
                 elif what not in known:
                     refused.of_recording.append(text)
-    if run.not_come:
-        refused.of_change.append(run.not_come)
+    if run.not_replaced:
+        refused.of_change.append(run.not_replaced)
     return refused
 
 

@@ -10,6 +10,8 @@ from cnc_ptp.protocol.blocks import CommandAnswer, CycleBlock
 from cnc_ptp.protocol.commands import BAD_ARGUMENT
 from cnc_ptp.protocol.jobs import JobStatus
 
+KINDS = ("axis", "spindle", "channel")
+
 
 class UnitReference(Protocol):
     """An axis, spindle or channel, in the PLC unit or in a client.
@@ -49,7 +51,7 @@ class UnitReference(Protocol):
 
 def unit_of(block: object, unit: UnitReference) -> UnitReference:
     """The unit that a function block gets. Raises CncError 22001 for anything else, such as the name of a unit."""
-    if hasattr(unit, "give") and hasattr(unit, "job_status"):
+    if getattr(unit, "kind", "") in KINDS:
         return unit
     reason = f"unit = {unit!r} is no axis, spindle or channel of a machine"
     raise CncError(BAD_ARGUMENT, reason, "nothing was made", where=type(block).__name__)
