@@ -106,6 +106,7 @@ def random_trace(block_type: type, seed: int) -> tuple[list[Call], FakeUnit]:
     chance = random.Random(seed)
     unit = FakeUnit("spindle" if block_type is MC_OrientSpindle else "axis")
     block, name = block_type(unit), INPUTS[block_type]
+    needed = {"master": "y"} if block_type in (MC_GearIn, MC_CamIn) else {}
     trace: list[Call] = []
     execute = False
     for _ in range(250):
@@ -116,7 +117,7 @@ def random_trace(block_type: type, seed: int) -> tuple[list[Call], FakeUnit]:
         if unit.given:
             unit.last.tells = next_told(unit.last.tells, chance)
         told = unit.last.tells if unit.given else None
-        block(execute, **({name: value} if name else {}))
+        block(execute, **needed, **({name: value} if name else {}))
         trace.append(Call(execute, value, told, outputs(block)))
     return trace, unit
 
