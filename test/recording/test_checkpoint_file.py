@@ -35,9 +35,9 @@ def call(*arguments: object) -> Result:
     return CliRunner().invoke(cli.main, [str(argument) for argument in arguments])
 
 
-def simulated(path: Path, *options: object, program: str = PROGRAM) -> Path:
+def simulated(path: Path, *options: object, program: str = PROGRAM, checkpoints: int = 0) -> Path:
     (path.parent / "lines.nc").write_text(program)
-    given = ("--program", path.parent / "lines.nc", "--record", path, "--checkpoints", 0)
+    given = ("--program", path.parent / "lines.nc", "--record", path, "--checkpoints", checkpoints)
     result = call("simulate", MILL, *given, *options)
     assert result.exit_code == 0, result.output
     return path
@@ -79,7 +79,7 @@ def test_a_file_counts_where_another_kernel_has_recorded(tmp_path: Path, monkeyp
     path = tmp_path / "run.mcap"
     with monkeypatch.context() as other:
         other.setattr(machine_state, "kernel_digest", lambda: bytes(16))
-        simulated(path, "--checkpoints", 1)
+        simulated(path, checkpoints=1)
     older = call("replay", path, "--from", 3.2)
     assert "computed from 0 s: P-ERR-26152 checkpoint: the state is that of a kernel with other sources" in older.output
     assert call("replay", path, "--checkpoints", 1).exit_code == 0

@@ -10,7 +10,7 @@ from web_support import MILL, site
 from cnc_ptp.errors import CncError
 from cnc_ptp.web.access.security import require_secured, tls_context
 from cnc_ptp.web.faces.machine_face import offline_face
-from cnc_ptp.web.options import listen
+from cnc_ptp.web.options import WebOptions, listen
 
 
 def run(story, **options):
@@ -379,7 +379,8 @@ def test_headers_of_every_answer():
 )  # fmt: skip
 def test_an_address_that_others_reach(options, text):
     with pytest.raises(CncError) as refused:
-        require_secured(*options)
+        host, certificate, key, users = options
+        require_secured(WebOptions(host=host, certificate=certificate, key=key, users=users))
     assert (refused.value.number, refused.value.message) == (26232, text)
 
 
