@@ -3,7 +3,8 @@
 A machine runs offline. Each step is a command with random arguments, good and bad ones, to an axis, a spindle, a
 channel or the PLC, or some blocks of time. What must hold:
 
-- the invariants of each command and block (checked_machine.py),
+- the invariants of each command and block (checked_machine.py); what the PLC passes on and is refused in its block
+  leaves everything as in a twin that did not get it,
 - the motion keeps to its limits and has no step, what is stopped stays stopped (recording/motion_check),
 - the run computed again from its recorded commands is equal to the bit.
 
@@ -26,7 +27,6 @@ import numpy as np
 
 from bench.checked_machine import CheckedMachine
 from bench.jobs import ROOT
-from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.protocol.blocks import AxisBlock, Command, CommandRecord, SpindleBlock
 from cnc_ptp.protocol.commands import COMMANDS, INTERNAL, THROUGH_PLC, Argument
@@ -43,13 +43,17 @@ from cnc_ptp.recording.motion_check.inputs import (
     orders_by_unit,
 )
 
-MACHINES = ("config/mill.yaml", "config/lathe.yaml", "config/ptp.yaml", "config/gantry.yaml")
+TWO_CHANNELS = "examples/spindles/two_channels.yaml"
+MACHINES = ("config/mill.yaml", "config/lathe.yaml", "config/ptp.yaml", "config/gantry.yaml", TWO_CHANNELS)
 LIFE = 300
 """Steps of a machine."""
 POWERED = 0.9
 """Share of axes and spindles that have power from the start."""
 MOST_STOPPING = 10
 """Seconds of machine time, 100 blocks each, in which all units must rest."""
+TWINS = 0.3
+"""Share of commands through the PLC that are compared with a machine that did not get them."""
+BLOCKS_AFTER = 3
 FREED = 0.03
 """Share of steps that set all units free first: otherwise most of a life is spent at a standstill."""
 LEFT_OUT = INTERNAL | {"write_drive_parameter", "read_drive_parameter", "write_parameter", "serve", "set_life_sign"}
@@ -84,6 +88,11 @@ PROGRAMS = (
     "N10 G02 X10 I5 F2000\nN20 M00\nN30 G01 X0\nM30\n",
     "N10 G01 X1e9\n",
     "N10 G01 X[\n",
+    "N10 G18 G00 X30 Z60\nN20 M03 S400\nN30 G33 Z40 K2\nN40 G00 X40\nN50 M05\nM30\n",
+    "N10 M19 S.POS=0 M3 S100\nN20 G63 Z-8 F250 S200\nN30 Z5 S-200\nN40 M05 G01 X5 F1000\nM30\n",
+    "N10 G00 X40\nN20 M19 S.POS=0 S200\nN30 #CAX [S, C]\nN40 G01 X20 C90 F2000\nN50 C-45\nN60 #CAX OFF\nM30\n",
+    "N10 S[M03 REV1000]\nN20 G01 X50 F4000\nN30 G95 F0.2 X45\nN40 S[M19 REV200 POS90]\nM30\n",
+    "N10 S1[M04 REV800]\nN20 G01 Y50 F3000\nN30 S1[M19 REV200 POS90]\nN40 S3[M05]\nM30\n",
 )
 
 
@@ -206,13 +215,34 @@ class CommandedMachine(CheckedMachine):
         """One command; what goes through the PLC is carried out in the next block."""
         asked = Command(unit, command, arguments)
         self.counts["commands"] += 1
-        if self.kinds[unit] == "axis" and command in THROUGH_PLC:
-            try:
-                self.plc.input(asked)
-            except CncError:
-                self.counts["refused"] += 1
+        if self.kinds[unit] != "axis" or command not in THROUGH_PLC:
+            self.counts["refused"] += not self.command(asked).accepted
+        elif self.random.random() < TWINS:
+            self.give_with_twin(asked)
+        else:
+            self.plc.input(asked)
+
+    def give_with_twin(self, asked: Command) -> None:
+        """A command through the PLC and its block; if it is refused, this and the next blocks are those without it."""
+        twin = self.twin(self.state())
+        self.plc.input(asked)
+        given = len(self.records)
+        self.run(1)
+        answers = [
+            each for each in self.records[given:] if (each.target, each.command) == (asked.target, asked.command)
+        ]
+        if len(answers) != 1 or answers[0].accepted:
             return
-        self.counts["refused"] += not self.command(asked).accepted
+        self.counts["refused"] += 1
+        self.counts["compared with a twin"] += 1
+        said = f"{asked.target} {asked.command} {asked.arguments}: {answers[0].message}"
+        blocks = [{name: of_unit[-1] for name, of_unit in self.blocks.items()}]
+        again = self.twin(self.state())
+        blocks += [{name: output.block for name, output in again.tick().items()} for _ in range(BLOCKS_AFTER)]
+        for expected in blocks:
+            for name, output in twin.tick().items():
+                if name != PLC:
+                    self.compare(output.block, expected[name], f"{name} after the refused {said}")
 
     def run(self, blocks: int) -> None:
         """Time goes on."""
@@ -251,15 +281,15 @@ class CommandedMachine(CheckedMachine):
         for number, outputs in enumerate(again):
             for name, output in outputs.items():
                 if name != PLC:
-                    self.compare(name, self.blocks[name][number], output.block)
+                    self.compare(self.blocks[name][number], output.block, f"replay of {name}")
             if self.violations:
                 return
 
-    def compare(self, name: str, first: Any, second: Any) -> None:
+    def compare(self, first: Any, second: Any, what: str) -> None:
         """Bit by bit; answers are for the PLC that has given the commands, which is not there in a replay."""
         names = [each.name for each in fields(first) if each.name != "answers"]
         parted = [each for each in names if written(getattr(first, each)) != written(getattr(second, each))]
-        self.require(not parted, f"replay differs: {name} from cycle {first.first_cycle} in {', '.join(parted)}")
+        self.require(not parted, f"{what} differs from cycle {first.first_cycle} in {', '.join(parted)}")
 
 
 def written(value: Any) -> str:

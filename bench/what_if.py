@@ -29,13 +29,12 @@ from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters, load_machine
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import Command, CommandRecord
-from cnc_ptp.recording.checkpoints import CHECKPOINT_SECONDS
 from cnc_ptp.recording.mcap_file import METADATA, McapFile
 from cnc_ptp.recording.reader import COMMAND
 from cnc_ptp.recording.run_inputs import RunInputs
 from cnc_ptp.recording.what_if import Change, WhatIf
 from cnc_ptp.recording.writer import CHECKPOINT, CHECKPOINT_TEXT, MACHINE_FILE, READY, offer
-from cnc_ptp.state.machine_state import StateStore
+from cnc_ptp.state.machine_state import CHECKPOINT_SECONDS, StateStore
 from cnc_ptp.wire.layout import encode
 from cnc_ptp.wire.schemas import full_name, load_schema
 from cnc_ptp.wire.stamps import Stamps

@@ -67,13 +67,6 @@ def main(context: click.Context) -> None:
 
 @main.command("simulate")
 @run_options
-@click.option(
-    "--checkpoints",
-    type=click.FloatRange(min=0.0),
-    default=10.0,
-    show_default=True,
-    help="Machine time in s between two checkpoints in the recording, from which a replay can begin; 0: none.",
-)
 def simulate_command(**options: Any) -> None:
     """Run a machine offline, as fast as possible."""
     from cnc_ptp.commands.run.simulate import simulate

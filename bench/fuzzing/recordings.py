@@ -31,7 +31,7 @@ from cnc_ptp.recording.opened import OpenRecording
 from cnc_ptp.recording.reader import iter_messages, read_recording
 from cnc_ptp.recording.recovery import recover
 from cnc_ptp.recording.run_inputs import RunInputs
-from cnc_ptp.state.machine_state import HEAD, StateStore, check_sum, read
+from cnc_ptp.state.machine_state import HEAD, StateStore, check_sum, read, together
 
 MACHINE = "/machine: {ros__parameters: {axes: [x], block_cycles: 5}}\n/x: {ros__parameters: {getriebe.0.kv: 3000}}\n"
 CYCLES = 30
@@ -172,10 +172,13 @@ def replay_all(file: Path) -> None:
         if inputs.end > LONGEST_REPLAY:
             raise Broken(f"a recording of {CYCLES} cycles would be computed up to cycle {inputs.end}")
         if inputs.machine_yaml:
-            store = StateStore(inputs.required_machine())
+            machine = inputs.required_machine()
+            store = StateStore(machine)
             store.texts.update(inputs.checkpoint_texts())
-            for state in inputs.states_before(inputs.end):
-                refusal_of(lambda read: store.restore(read()), state)  # an older one is taken where one is damaged
+            for states in inputs.states_before(inputs.end):
+                refusal_of(
+                    lambda read: together(map(store.restore, read()), machine), states
+                )  # an older one is taken where one is damaged
     with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
         replay(str(file), verify=True, publish=False, rate=1.0)
 

@@ -16,6 +16,7 @@ from xml.etree import ElementTree
 from cnc_ptp.machine.wiring import unit_kinds, wiring
 from cnc_ptp.nodes.observed_topics import observed_topics
 from cnc_ptp.nodes.topics import (
+    CHECKPOINTS,
     COMMAND,
     COUPLING_SERVICES,
     DIAGNOSTICS,
@@ -98,7 +99,7 @@ def unit_access(machine: MachineParameters, unit: str) -> NodeAccess:
     masters = [name for name, of in kinds.items() if {of, kind} <= {"axis", "spindle"} and name != unit]
     node = NodeAccess(
         unit,
-        publish={block_topic(unit), EVENT, COMMAND, REPORT, HEARTBEAT, DIAGNOSTICS, LATENESS, ROSOUT},
+        publish={block_topic(unit), CHECKPOINTS, EVENT, COMMAND, REPORT, HEARTBEAT, DIAGNOSTICS, LATENESS, ROSOUT},
         subscribe={HEARTBEAT, TICK, *map(block_topic, (*inputs.upstream, *inputs.feedback, *masters))},
         reply={f"{unit}/{command}" for command in SERVICES[kind]},
         execute={f"{unit}/{name}" for name in ACTIONS[kind]},
@@ -137,6 +138,7 @@ def recorder_access(machine: MachineParameters) -> NodeAccess:
         TICK,
         EVENT,
         COMMAND,
+        CHECKPOINTS,
         DRIVE_STOPS,
         DIAGNOSTICS,
         LATENESS,

@@ -68,7 +68,9 @@ def _run(
     )
     nodes: list[Node] = [
         monitor,
-        *unit_nodes(machine, options, state_rate=options.state_rate, handover=handover),
+        *unit_nodes(
+            machine, options, state_rate=options.state_rate, checkpoints=options.checkpoints, handover=handover
+        ),
         clock,
     ]
     if recorder is not None:

@@ -16,6 +16,7 @@ from cnc_ptp.nodes import process
 from cnc_ptp.number_range import STATES_PER_SECOND
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.ros_arguments import split
+from cnc_ptp.state.machine_state import CHECKPOINT_SECONDS
 
 MACHINE = click.argument("machine", type=click.Path(dir_okay=False))
 NAME = click.argument("name")
@@ -26,7 +27,13 @@ DIALECT = click.option("--dialect", type=click.Choice(("twincat", "iso")), help=
 STATE_RATE = click.option(
     "--state-rate", type=STATES_PER_SECOND, help="Live states per second, instead of P-MACH-00070."
 )
-
+CHECKPOINTS = click.option(
+    "--checkpoints",
+    type=click.FloatRange(min=0.0),
+    default=CHECKPOINT_SECONDS,
+    show_default=True,
+    help="Machine time in s between two states for the recorder; 0: none.",
+)
 FREE_RUN = click.option("--free-run", is_flag=True, help="The clock runs free: the node waits for blocks, not ticks.")
 
 
@@ -38,6 +45,7 @@ def unit_main(node_class: Callable[..., Any], what: str, *more: click.Parameter)
     @NAME
     @RECORDERS
     @STATE_RATE
+    @CHECKPOINTS
     def command(machine: str, name: str, **options: Any) -> None:
         def make() -> Any:
             node = node_class(read_machine(machine), name, **options)

@@ -283,6 +283,7 @@ def without_text(entry: Entry) -> Entry:
 @start_options
 @node_command_line.RECORDERS
 @node_command_line.STATE_RATE
+@node_command_line.CHECKPOINTS
 @node_command_line.FREE_RUN
 def command(
     machine: str,

@@ -14,11 +14,12 @@ from rclpy.type_support import check_for_type_support
 from cnc_ptp import msg
 from cnc_ptp.nodes import axis, clock, nc_channel, plc_bridge, recorder, spindle
 from cnc_ptp.nodes.topics import BLOCK_TYPES, COUPLING_SERVICES, PLC_TOPICS, SERIES_SERVICES, SERVICES, STATE_TYPES
+from cnc_ptp.state.machine_state import kernel_digest
 
 MODULES = (axis, clock, nc_channel, plc_bridge, recorder, spindle)
 MESSAGES = {
     *(msg.CycleTick, msg.BlockReport, msg.Event, msg.CommandRecord, msg.LatenessHistogram, msg.HandshakeRequest),
-    msg.DriveStop,
+    *(msg.DriveStop, msg.UnitCheckpoint),
     *(*BLOCK_TYPES.values(), *STATE_TYPES.values(), *COUPLING_SERVICES.values(), *SERIES_SERVICES.values()),
     *(message_type for group in (*PLC_TOPICS.values(), *SERVICES.values()) for message_type in group.values()),
 }
@@ -35,5 +36,6 @@ def require_nothing_started() -> None:
 for message_type in MESSAGES:
     check_for_type_support(message_type)
 require_nothing_started()
+kernel_digest()
 gc.collect()
 gc.freeze()  # pages with what is never collected stay shared

@@ -5,6 +5,7 @@ With `--foxglove PORT` it streams them, too.
 
 from __future__ import annotations
 
+import json
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -33,6 +34,7 @@ from cnc_ptp.nodes.topics import (
     BLOCK_CLASSES,
     BLOCK_TYPES,
     BLOCKS,
+    CHECKPOINTS,
     COMMAND,
     DIAGNOSTICS,
     DRIVE_STOPS,
@@ -42,6 +44,7 @@ from cnc_ptp.nodes.topics import (
     PLC_INPUT,
     RECORDER,
     REPORT,
+    STATES_OF_UNITS,
     TICK,
     block_topic,
     recorded_topic,
@@ -56,6 +59,7 @@ from cnc_ptp.recording.recorder_options import FROM_THE_START, RecorderOptions
 from cnc_ptp.recording.settings import COMPRESSIONS
 from cnc_ptp.recording.trigger import Condition, make_recording
 from cnc_ptp.recording.writer import Recording
+from cnc_ptp.state.encoding import digest_of
 from cnc_ptp.wire.block_codec import codec_of, head_of, with_plain_header
 from cnc_ptp.wire.stamps import Stamps
 from cnc_ptp.wire.ticks import Tick, decode_tick
@@ -78,8 +82,9 @@ class RecorderNode(PollingNode):
     """Writes the recording of a run.
 
     Subscriptions: /clock/tick, /<unit>/block of every unit (as raw bytes), /events, /commands, /drive_stops,
-    /diagnostics, /lateness, the topics of observed_topics, and of /rosout the messages of the nodes of its namespace:
-    these come as raw bytes and are stamped with the time of their arrival, in free run with that of the last tick.
+    /checkpoints, /diagnostics, /lateness, the topics of observed_topics, and of /rosout the messages of the nodes of
+    its namespace: these come as raw bytes and are stamped with the time of their arrival, in free run with that of the
+    last tick.
     Publishes /clock/report: ready, and in free run the newest tick that it has taken; /events: blocks that did not
     arrive, snapshots. A block that comes twice is recorded once.
     Services: ~/start and ~/stop of a recording, ~/snapshot of the last seconds.
@@ -118,6 +123,8 @@ class RecorderNode(PollingNode):
         """First cycle of the newest tick."""
         self._recording: OnDemand | None = None
         self._early: list[Callable[[], None]] = []
+        self._texts: dict[str, str] = {}
+        """Long ones of checkpoints, by digest."""
         self._next_cycle = dict.fromkeys(self._units, 0)
         self._stopped: dict[str, int] = {}
         """The first cycle of units whose drives have stopped on their own."""
@@ -143,6 +150,8 @@ class RecorderNode(PollingNode):
             received = self._guarded(partial(self._on_stamped, topic, message_type))
             self.create_subscription(message_type, topic, received, PLC_INPUT, raw=True)
         self.create_subscription(msg.DriveStop, DRIVE_STOPS, self._guarded(self._on_drive_stop), EVENTS, raw=True)
+        received = self._guarded(self._on_checkpoint)
+        self.create_subscription(msg.UnitCheckpoint, CHECKPOINTS, received, STATES_OF_UNITS)
         for topic, message_type, quality in observed_topics(machine):
             received = self._guarded(partial(self._on_observed, recorded_topic(topic), type_name(message_type)))
             self.create_subscription(message_type, topic, received, quality, raw=True)
@@ -294,6 +303,11 @@ class RecorderNode(PollingNode):
         message = deserialize_message(data, msg.DriveStop)
         self._stopped[message.unit] = message.first_cycle
         self._on_stamped(DRIVE_STOPS, msg.DriveStop, data)
+
+    def _on_checkpoint(self, message: msg.UnitCheckpoint) -> None:
+        self._texts |= {digest_of(text): text for text in json.loads(message.texts_json)}
+        if self._recording is not None:
+            self._recording.unit_state(message.next_cycle, message.unit, message.state.tobytes(), self._texts)
 
     def _on_command(self, message: msg.CommandRecord) -> None:
         command = convert.message_to_record(message)

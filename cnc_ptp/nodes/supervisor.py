@@ -42,6 +42,7 @@ from cnc_ptp.recording.closing import close_cut_recording
 from cnc_ptp.recording.recorder_options import FROM_THE_START, RecorderOptions
 from cnc_ptp.ros_arguments import ros_arguments
 from cnc_ptp.start_options import start_words
+from cnc_ptp.state.machine_state import CHECKPOINT_SECONDS
 
 SERVER = "server of processes"
 NOT_READY = 26105
@@ -79,6 +80,8 @@ class RunOptions:
     """A PLC in a file."""
     recorder: RecorderOptions | None = None
     """Of the recorder; without `record` it records on demand alone."""
+    checkpoints: float = CHECKPOINT_SECONDS
+    """Machine time between two states of all units in the recording, s; 0: none."""
     foxglove: int | None = None
     """Port of a live stream for Foxglove."""
 
@@ -299,6 +302,7 @@ def command_lines(
     """Name and command line (executable first) of every node of a run; the clock waits for `observers` as well."""
     free_run = ["--free-run"] if options.free_run else []
     units = ["--recorders", "1"] if options.recording else []
+    units += ["--checkpoints", str(options.checkpoints)] if options.recording else []
     units = [*units, "--state-rate", str(options.state_rate)] if options.state_rate is not None else units
     program = ["--program", options.program] if options.program else []
     program += ["--dialect", options.dialect] if options.program and options.dialect else []

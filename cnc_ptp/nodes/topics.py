@@ -31,6 +31,9 @@ LATEST = QoSProfile(depth=1, reliability=QoSReliabilityPolicy.RELIABLE, durabili
 PLC_INPUT = QoSProfile(depth=10, reliability=QoSReliabilityPolicy.RELIABLE)
 """Cyclic values that PLC programmers write: `ros2 topic pub` works without options."""
 
+STATES_OF_UNITS = QoSProfile(depth=100, reliability=QoSReliabilityPolicy.RELIABLE)
+"""Checkpoints: one of each unit at a time."""
+
 RECORDER = "recorder"
 MONITOR = "run_monitor"
 """Nodes besides the units that report when they are ready."""
@@ -44,6 +47,7 @@ COMMAND = "commands"
 DIAGNOSTICS = "diagnostics"
 JOINT_STATES = "joint_states"
 DRIVE_STOPS = "drive_stops"
+CHECKPOINTS = "checkpoints"
 LIFE_SIGN = "plc/life_sign"
 """Names are relative: they are in the namespace of the nodes."""
 

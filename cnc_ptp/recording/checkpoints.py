@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Final, Protocol
 
 from cnc_ptp.errors import CncError
@@ -9,19 +10,16 @@ from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.recording.mcap_chunks import CORRUPT
 from cnc_ptp.recording.run_inputs import RunInputs
-from cnc_ptp.recording.writer import CHECKPOINT_TEXT
 from cnc_ptp.state.faults import DAMAGED, OTHER_VERSION
-from cnc_ptp.state.machine_state import MachineState, StateStore
+from cnc_ptp.state.machine_state import MachineState, StateStore, together
 
-CHECKPOINT_SECONDS: Final = 10.0
-"""Machine time between two checkpoints. A replay computes so much more than it was asked for."""
 NO_CHECKPOINTS: Final = "the recording has no checkpoints; cnc_ptp replay --checkpoints makes them, once"
 
 
 class CheckpointKeeper(Protocol):
     """A recording that is being written, or the file beside one."""
 
-    def attachment(self, name: str, media_type: str, text: str) -> None: ...
+    def checkpoint_texts(self, texts: Mapping[str, str]) -> None: ...
     def checkpoint(self, cycle: int, state: bytes) -> None: ...
 
 
@@ -36,7 +34,6 @@ class Checkpoints:
         self._recording, self._store = recording, StateStore(parameters)
         self._cycles = max(1, round(seconds * 1e6 / parameters.cycle_time_us))
         self._next = self._cycles
-        self._texts: set[str] = set()
 
     @property
     def fault(self) -> str:
@@ -58,9 +55,7 @@ class Checkpoints:
             self._error = self._error or error
             self._missing.append(machine.next_cycle * self._cycle_time)
             return
-        for digest in self._store.texts.keys() - self._texts:
-            self._texts.add(digest)
-            self._recording.attachment(f"{CHECKPOINT_TEXT}{digest}", "text/plain", self._store.texts[digest])
+        self._recording.checkpoint_texts(self._store.texts)
         self._recording.checkpoint(machine.next_cycle, state)
 
 
@@ -72,7 +67,7 @@ def state_before(recorded: RunInputs, machine: MachineParameters, cycle: int) ->
     store.texts.update(recorded.checkpoint_texts())
     for read in recorded.states_before(cycle):
         try:
-            return store.restore(read()), why
+            return together(map(store.restore, read()), machine), why
         except CncError as error:
             if error.number not in (DAMAGED, OTHER_VERSION, CORRUPT):
                 raise

@@ -11,12 +11,13 @@ from cnc_ptp.machine.offline import OfflineMachine, Outputs
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import CycleTick, Event
 from cnc_ptp.protocol.unit import PLC, Unit
-from cnc_ptp.recording.checkpoints import CHECKPOINT_SECONDS, Checkpoints
+from cnc_ptp.recording.checkpoints import Checkpoints
 from cnc_ptp.recording.mcap_file import NOT_WRITTEN
 from cnc_ptp.recording.on_demand import OnDemand, Snapshots
 from cnc_ptp.recording.settings import Settings
 from cnc_ptp.recording.trigger import Condition, TriggeredRecording, make_recording
 from cnc_ptp.recording.writer import AS_USUAL, Recording
+from cnc_ptp.state.machine_state import CHECKPOINT_SECONDS
 from cnc_ptp.wire.stamps import Stamps
 
 

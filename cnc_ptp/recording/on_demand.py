@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from contextlib import suppress
 from dataclasses import dataclass
@@ -170,6 +170,12 @@ class OnDemand:
             self._kept.add(self._tick_begin, len(cdr), RAW, topic, type_name, cdr, log_time_ns)
         if self.current is not None and self._tick_begin < self._end:
             self.current.raw(topic, type_name, cdr, log_time_ns)
+
+    def unit_state(self, cycle: int, unit: str, state: bytes, texts: Mapping[str, str]) -> None:
+        """Of a checkpoint before `cycle`; `texts`: all long ones so far, by digest. Snapshots have none."""
+        if self.current is not None and self._begin <= cycle <= self._end:
+            self.current.checkpoint_texts(texts)
+            self.current.checkpoint(cycle, state, unit)
 
     def flush_if_due(self, now: float) -> None:
         """`now` in s of any steady clock."""

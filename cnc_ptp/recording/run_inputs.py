@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import heapq
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from hashlib import blake2b
 from itertools import chain
@@ -71,7 +71,8 @@ class RunInputs:
         commands = chain.from_iterable(part.commands() for part in self._parts)
         self.commands = sorted(commands, key=lambda record: record.cycle)
         self.beside = self._take_beside(checkpoint_file(self.path))
-        numbers = [name.removeprefix(CHECKPOINT) for name in self._attachments if name.startswith(CHECKPOINT)]
+        names = [name.removeprefix(CHECKPOINT) for name in self._attachments if name.startswith(CHECKPOINT)]
+        numbers = {name.partition("/")[0] for name in names}
         self.checkpoints = sorted(int(number) for number in numbers if number.isdecimal())
         names = [name for name in self._attachments if name.startswith(PLC_FILE)]
         self.plc_file = names[0].removeprefix(PLC_FILE) if names else ""
@@ -93,13 +94,19 @@ class RunInputs:
             digest.update(repr(words).encode(errors="surrogatepass"))
         return digest.hexdigest()
 
-    def states_before(self, cycle: int) -> Iterator[Callable[[], bytes]]:
-        """Reads the checkpoints at or before a cycle, the newest first; each may raise CncError 26003."""
+    def states_before(self, cycle: int) -> Iterator[Callable[[], list[bytes]]]:
+        """Reads the checkpoints at or before a cycle, the newest first; each may raise CncError 26003.
+
+        A checkpoint is one state of all units, or one of each (of the graph).
+        """
         for first in sorted((first for first in self.checkpoints if first <= cycle), reverse=True):
             name = f"{CHECKPOINT}{first}"
             for part in [*self._beside, *self._parts]:
                 if name in part.index.attachments:
-                    yield partial(part.index.attached, name)
+                    yield partial(part.attached, [name])
+            for part in self._parts:
+                if of_units := [each for each in part.index.attachments if each.startswith(f"{name}/")]:
+                    yield partial(part.attached, of_units)
 
     def checkpoint_texts(self) -> dict[str, str]:
         """Long texts of the states by their digests."""
@@ -163,6 +170,10 @@ class _Part:
 
     def __init__(self, file: Path) -> None:
         self.index = McapIndex(file)
+
+    def attached(self, names: Iterable[str]) -> list[bytes]:
+        """Raises CncError 26003."""
+        return [self.index.attached(name) for name in names]
 
     def messages(self, types: Collection[str], from_ns: int = 0) -> Iterator[RawMessage]:
         """Messages of some types in log-time order, from the chunks that may have those of `from_ns` or later."""

@@ -97,6 +97,11 @@ class TriggeredRecording(Recording):
         """See Recording."""
         self._keep(tick.first_cycle, partial(super().tick, tick, scheduled_monotonic_ns))
 
+    def checkpoint(self, cycle: int, state: bytes, unit: str = "") -> None:
+        """See Recording; none that is older."""
+        if self.begin is not None and cycle >= self.begin:
+            super().checkpoint(cycle, state, unit)
+
     def _block(self, name: str, block_class: type, data: bytes, layout: Layout | None = None) -> None:
         first_cycle = head_of(data)[1]
         self._keep(first_cycle, partial(super()._block, name, block_class, data, layout))

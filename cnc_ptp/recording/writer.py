@@ -196,6 +196,8 @@ class Recording:
         self._flushed_at: float | None = None
         self._topics: dict[str, _Topic] = {}
         self._units: dict[tuple[str, type], _Unit] = {}
+        self._texts: set[str] = set()
+        """Digests of those of checkpoints that are in the recording."""
         self._closed = False
         self._level, self._settings = level, settings
         self._split = settings.split
@@ -273,10 +275,18 @@ class Recording:
         self._require_open(name)
         self._file.attachment(name, media_type, text.encode(), self.stamps.start_ns)
 
-    def checkpoint(self, cycle: int, state: bytes) -> None:
-        """The state of the units before `cycle`."""
+    def checkpoint(self, cycle: int, state: bytes, unit: str = "") -> None:
+        """The state before `cycle`: of all units, or of `unit` as a part of it."""
         self._require_open("a checkpoint")
-        self._file.attachment(f"{CHECKPOINT}{cycle}", "application/octet-stream", state, self.stamps.at(cycle))
+        name = f"{CHECKPOINT}{cycle}/{unit}" if unit else f"{CHECKPOINT}{cycle}"
+        self._file.attachment(name, "application/octet-stream", state, self.stamps.at(cycle))
+
+    def checkpoint_texts(self, texts: Mapping[str, str]) -> None:
+        """Long texts that states refer to, by digest; each is written once."""
+        for digest in texts.keys() - self._texts:
+            self._texts.add(digest)
+            content = texts[digest].encode(errors="surrogatepass")
+            self._file.attachment(f"{CHECKPOINT_TEXT}{digest}", "text/plain", content, self.stamps.start_ns)
 
     # writing
 

@@ -9,7 +9,7 @@ states of its own sources only: what an attribute means is nowhere but there.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import cache
 from hashlib import blake2b
 from typing import Any, Final, NamedTuple
@@ -22,6 +22,7 @@ from cnc_ptp.compiled.sources import hashes, sources
 from cnc_ptp.garbage import paused_collector
 from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.runner import UnitRunner
+from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import CycleBlock
 from cnc_ptp.protocol.unit import PLC
@@ -35,6 +36,8 @@ MAGIC: Final = b"CNCS"
 LAYOUT: Final = 1
 HEAD: Final = 4 + 2 + 16 + 16
 LEVEL: Final = 3
+CHECKPOINT_SECONDS: Final = 10.0
+"""Machine time between two checkpoints. A replay computes so much more than it was asked for."""
 LARGEST: Final = 1 << 30
 """Bytes of JSON; more than that has no machine."""
 
@@ -66,9 +69,15 @@ class StateStore:
         runners, blocks = machine.parts
         if not with_plc:
             runners = {name: runner for name, runner in runners.items() if name != PLC}
+        return self.encode_units(machine.next_cycle, runners, blocks)
+
+    def encode_units(
+        self, next_cycle: int, runners: Mapping[str, UnitRunner], blocks: Mapping[str, CycleBlock]
+    ) -> bytes:
+        """Some units before a cycle, and the last blocks of some. Raises CncError 26150."""
         encoder = Encoder(self._roots, self.texts, interpreters(runners), self._lists)
         root = encoder.encode([runners, blocks])
-        text = json.dumps([machine.next_cycle, root, encoder.shapes, encoder.rows], separators=(",", ":"))
+        text = json.dumps([next_cycle, root, encoder.shapes, encoder.rows], separators=(",", ":"))
         rest = zstandard.compress(text.encode(), LEVEL)
         return MAGIC + LAYOUT.to_bytes(2, "little") + kernel_digest() + check_sum(rest) + rest
 
@@ -86,6 +95,23 @@ class StateStore:
         if not is_machine(found):
             raise damaged("its root does not hold units and their blocks")
         return MachineState(next_cycle, *found)
+
+
+def together(states: Iterable[MachineState], machine: MachineParameters) -> MachineState:
+    """The state of a machine of those of its units. Raises CncError 26151 where one is missing or of another cycle."""
+    runners: dict[str, UnitRunner] = {}
+    blocks: dict[str, CycleBlock] = {}
+    cycles = set()
+    for state in states:
+        cycles.add(state.next_cycle)
+        runners |= state.runners
+        blocks |= state.blocks
+    missing = ", ".join(name for name in unit_kinds(machine) if name not in (blocks if name == PLC else runners))
+    if missing:
+        raise damaged(f"it lacks {missing}")
+    if len(cycles) != 1:
+        raise damaged(f"its units are before the cycles {', '.join(map(str, sorted(cycles)))}")
+    return MachineState(cycles.pop(), runners, blocks)
 
 
 def parsed(content: bytes) -> Any:

@@ -43,7 +43,7 @@ def execute(line: str) -> str:
     if words[0] == "run":
         if "--record" not in words:
             return ""
-        words = ["simulate", *words[1:], "--checkpoints", "0"]
+        words = ["simulate", *words[1:]]
     result = CliRunner().invoke(main, words)
     assert result.exit_code == 0, (line, result.output, result.exception)
     return result.output

@@ -27,6 +27,13 @@ run_options = option_group(
         "--duration", type=DURATION, help="End after this many seconds; default: when everything is finished."
     ),
     click.option("--record", type=click.Path(), help="Write an MCAP recording."),
+    click.option(
+        "--checkpoints",
+        type=click.FloatRange(min=0.0),
+        default=10.0,
+        show_default=True,
+        help="Machine time in s between two checkpoints in the recording, from which a replay can begin; 0: none.",
+    ),
     click.option("--record-when", help="Begin the recording when a field has this value: 'x.set_velocity != 0'."),
     click.option(
         "--split", help="Record in parts of a size or a time, 500MB or 10min; the recording is a folder then."

@@ -23,6 +23,7 @@ from cnc_ptp.recording.node_figures import BLOCKS, CAME_TWICE, LOST_BLOCKS, foll
 from cnc_ptp.recording.on_demand import ENDED_EARLY
 from cnc_ptp.recording.overwriting import check_recording
 from cnc_ptp.recording.recorder_options import RecorderOptions
+from cnc_ptp.state.machine_state import CHECKPOINT_SECONDS
 from cnc_ptp.web.options import WebOptions
 
 
@@ -42,6 +43,7 @@ def run(
     plc: str | None = None,
     recorder: RecorderOptions | None = None,
     foxglove: int | None = None,
+    checkpoints: float = CHECKPOINT_SECONDS,
     web: WebOptions | None = None,
     listening: socket | None = None,
 ) -> int:
@@ -72,6 +74,7 @@ def run(
         plc=plc,
         recorder=recorder,
         foxglove=foxglove,
+        checkpoints=checkpoints,
     )
     with WebBesideRun(web, listening) as pages, RunProgress() as progress:
 

@@ -33,11 +33,11 @@ from cnc_ptp.plc.program.plc_program import PlcFile
 from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, PlcBlock, Severity
 from cnc_ptp.protocol.notes import Note, Notes, error_text
 from cnc_ptp.protocol.unit import PLC
-from cnc_ptp.recording.checkpoints import CHECKPOINT_SECONDS
 from cnc_ptp.recording.offline_run import OfflineRun
 from cnc_ptp.recording.overwriting import check_recording
 from cnc_ptp.recording.recorder_options import FROM_THE_START, RecorderOptions
 from cnc_ptp.recording.trigger import Condition
+from cnc_ptp.state.machine_state import CHECKPOINT_SECONDS
 
 LONG_CYCLE = 1.0
 """Seconds after which an interrupt breaks off a cycle of a PLC in a file."""

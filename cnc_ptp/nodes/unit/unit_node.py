@@ -43,6 +43,7 @@ from cnc_ptp.nodes.topics import (
     TICK,
     block_topic,
 )
+from cnc_ptp.nodes.unit.checkpoints import UnitCheckpoints
 from cnc_ptp.nodes.unit.claim import claim_unit
 from cnc_ptp.nodes.unit.diagnostics import UnitDiagnostics
 from cnc_ptp.nodes.unit.live_state import LiveState, period_cycles
@@ -55,6 +56,7 @@ from cnc_ptp.protocol.authority import closed_to
 from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Event, PlcBlock, Severity
 from cnc_ptp.protocol.commands import BAD_ARGUMENT, COMMANDS
 from cnc_ptp.protocol.unit import CLOCK, PLC, Unit
+from cnc_ptp.state.machine_state import CHECKPOINT_SECONDS
 from cnc_ptp.wire.block_codec import codec_of, encode_block, has_plain_header, head_of
 from cnc_ptp.wire.stamps import Stamps
 from cnc_ptp.wire.ticks import Tick, decode_tick
@@ -74,6 +76,7 @@ LOOK_PERIOD = 0.005
 LONGEST_COMMAND = 2.0
 """Seconds that a command or block may take; after that the node counts as silent."""
 DIAGNOSTICS_PERIOD = 1.0
+WITHOUT_STATES = "no state was stored, a replay from now on begins at an older checkpoint or at 0 s"
 
 
 class UnitNode(PollingNode):
@@ -95,13 +98,15 @@ class UnitNode(PollingNode):
         *,
         recorders: int = 0,
         state_rate: float | None = None,
+        checkpoints: float = CHECKPOINT_SECONDS,
         free_run: bool = False,
         handover: Handover | None = None,
     ) -> None:
         """Only a name in the graph; it takes part after `setup`.
 
         `recorders`: with 1, a recorder must have found the blocks too before the node is ready. `state_rate`: live
-        states per second, None = as the machine file says. `free_run`: the clock does not wait for the wall clock.
+        states per second, None = as the machine file says. `checkpoints`: seconds of machine time between two
+        states for a recorder, 0 = none. `free_run`: the clock does not wait for the wall clock.
         `handover`: to and from the other nodes of this process.
         """
         super().__init__(unit.name, enable_rosout=False)
@@ -120,6 +125,8 @@ class UnitNode(PollingNode):
         block_ms = machine.block_cycles * machine.cycle_time_us / 1000.0
         self.diagnostics = UnitDiagnostics(unit, block_ms=block_ms, length_unit="deg" if rotary else "mm")
         self._state_period = period_cycles(machine, state_rate)
+        self._checkpoint_seconds = checkpoints
+        self._checkpoints: UnitCheckpoints | None = None
         self._scheduled_ns: dict[int, int] = {}
         self._told_twice: set[str] = set()
         self._masters: set[str] = set()
@@ -181,6 +188,8 @@ class UnitNode(PollingNode):
         self._live_state = None
         if self._state_period and self.unit.kind in STATE_TYPES:
             self._live_state = LiveState(self, name, self.unit.kind, self._state_period)
+        if self._checkpoint_seconds > 0.0:
+            self._checkpoints = UnitCheckpoints(self, self._machine, self._checkpoint_seconds)
 
     def _make_subscriptions(self) -> None:
         """The last source of a block wakes the node, which then looks for those of the others.
@@ -442,6 +451,8 @@ class UnitNode(PollingNode):
         self.after_block(block)
         if self._live_state is not None and not isinstance(block, PlcBlock):
             self._live_state.publish(block, self._stamps)
+        if self._checkpoints is not None:
+            self._publish_checkpoint(self._checkpoints, block)
         self._end_if_over()
 
     def _end_if_over(self) -> None:
@@ -449,6 +460,15 @@ class UnitNode(PollingNode):
             self._ended = True
             self._publish_diagnostics()
             self.run_ended()
+
+    def _publish_checkpoint(self, checkpoints: UnitCheckpoints, block: CycleBlock) -> None:
+        """One that cannot be stored is the last one: those after it could not be, either."""
+        try:
+            with self._working():
+                checkpoints.watch(self._runner, block, self._stamps)
+        except CncError as error:
+            self._checkpoints = None
+            self.tell(Severity.INFO, error.number, f"{self.unit.name}: {error.reason}; {WITHOUT_STATES}")
 
     def run_ended(self) -> None:
         """For subclasses: the last block has been computed."""
