@@ -125,7 +125,7 @@ def test_a_checkpoint_without_a_unit_is_passed_over(tmp_path: Path) -> None:
     run("run", MILL, "--program", program(tmp_path), "--record", path, "--checkpoints", 1, "--free-run")
     machine = read_machine(MILL)
     with RunInputs(path) as recorded:
-        del recorded._attachments["checkpoint/3000/x"]
+        del recorded._parts[0].index.attachments["checkpoint/3000/x"]
         state, why = state_before(recorded, machine, 3200)
         assert state is not None and state.next_cycle == 2000
         assert why == "P-ERR-26151 checkpoint: the state is damaged: it lacks x; nothing was restored"
