@@ -18,6 +18,7 @@ from cnc_ptp.protocol.blocks import (
 from cnc_ptp.web.faces.alarms import Alarms, event_fields
 from cnc_ptp.web.faces.distances import DistancesToGo
 from cnc_ptp.web.faces.face import WRITE_PARAMETER, Face, Past, State
+from cnc_ptp.web.faces.lag_range import lag_ranges
 from cnc_ptp.web.faces.offset_table import OffsetTable
 from cnc_ptp.web.faces.program_watch import ProgramWatch
 from cnc_ptp.web.faces.switches import Switches
@@ -86,12 +87,14 @@ class View:
         if news.diagnostics:
             self.to_all({"type": "diagnostics", "nodes": [*news.diagnostics]})
         distances = self._distances.fields(units, self._state, self.targets.positions)
+        lags = lag_ranges(news.blocks)
         state = {
             unit: {
                 **fields,
                 **self._switches.fields.get(unit, {}),
                 **self.targets.fields(unit),
                 **distances.get(unit, {}),
+                **lags.get(unit, {}),
             }
             for unit, fields in units.items()
         }

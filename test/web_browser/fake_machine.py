@@ -35,6 +35,8 @@ def axis(name: str) -> dict[str, Any]:
         "acceleration": 1000.0,
         "jerk": 20000.0,
         "override": 150,
+        "position_window": 0.05,
+        "kv": 83.3,
     }
     return {
         "name": name,
@@ -98,6 +100,9 @@ class Fake:
         self.holder: int | None = None
         self.time = 0.0
         self.cycle = 0
+        self.lag = (0.004, 0.004)
+        self.arrives = False
+        """Axes are in the range of their target."""
         self.signals: dict[int, list[str]] = {}
         self.state = {
             "plc": {"scenario_done": True, "run_done": False, "emergency_stop": False},
@@ -425,7 +430,9 @@ class Fake:
                 "velocity": 24.8,
                 "command_velocity": 25.1,
                 "target_velocity": 25.0,
-                "target": 60.0,
+                "lag_low": self.lag[0],
+                "lag_high": self.lag[1],
+                "target": place if self.arrives else 60.0,
             }
         channel = self.state["channel"]
         if channel["state"] == "running":

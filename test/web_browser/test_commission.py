@@ -141,3 +141,16 @@ def test_the_online_page_shows_each_feed_enable(look, server, fake):
     fake.state["x"]["status_bits"] = 0
     page.wait_for_selector("li:has-text('Feed forward: on')")
     page.wait_for_selector("li:has-text('Waits for feed: off')")
+
+
+def test_the_online_page_has_the_lag_of_every_cycle_kv_and_the_position_range(look, fake):
+    page = open_tab(look, "Online")
+    page.wait_for_selector(".readings >> text=83.3")
+    page.wait_for_selector("li:has-text('In position range: off')")
+    fake.lag, fake.arrives = (-0.125, 0.25), True
+    page.wait_for_selector("text=−0.12500")
+    page.wait_for_selector("text=0.25000")
+    page.wait_for_selector("li:has-text('In position range: on')")
+    fake.lag = (0.004, 0.004)
+    page.click("text=Reset lag")
+    page.wait_for_selector("text=−0.12500", state="detached")

@@ -8,9 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from cnc_ptp.parameters import ParameterSet
+from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.parameters.view.axis_view import axis_view, is_facing
 from cnc_ptp.parameters.view.channel_view import channel_view
+from cnc_ptp.parameters.view.gears import active_gear
 from cnc_ptp.parameters.view.spindle_view import spindle_view
 from cnc_ptp.protocol.commands import COMMANDS, INTERNAL, OF_CHANNELS, OF_PLC, Argument
 from cnc_ptp.web.access.rights import NOT_FROM_PAGE_ARGUMENTS, refused_from_pages
@@ -64,6 +66,8 @@ def axis_limits(parameters: ParameterSet, cycle_time: float) -> dict[str, Any]:
             "acceleration": axis.max_acceleration,
             "jerk": axis.jerk,
             "override": axis.max_override_percent,
+            "position_window": axis.position_window,
+            "kv": parameters.kernel(ids.GETRIEBE_KV, active_gear(parameters)),
         },
     }
 

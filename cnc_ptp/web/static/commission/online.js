@@ -3,11 +3,13 @@ import { button, h, panel, reading } from "../dom.js";
 import { fixed, percent, short, unitSign } from "../format.js";
 
 const bit = (number) => (state) => Boolean(state.status_bits & (1 << number)) || (number === 31 && state.status_bits >= 2 ** 31);
+/** Within the position window of the target, at rest or not. */
+const inRange = (state, unit) => typeof state.target === "number" && Math.abs(state.actual_position - state.target) <= unit.limits.position_window;
 const moves = (sign) => (state) => (state.set_velocity || 0) * sign > 1e-9;
 /** Group -> [word, whether it is on, whether on is bad]. */
 const BITS = {
   "Status, logical": [["Ready", (state) => !["Disabled", "ErrorStop", undefined].includes(state.state)], ["Referenced", (state) => !bit(18)(state)], ["Has job", bit(8)], ["Protected", bit(5)], ["Stopped", bit(7)], ["Coordinates shifted", bit(19)], ["Error", bit(31), true], ["Error delayed", bit(6), true]],
-  "Status, physical": [["Not moving", (state) => Math.abs(state.set_velocity || 0) < 1e-9], ["Moving forward", moves(1)], ["Moving backward", moves(-1)], ["Constant velocity", bit(12)], ["In target position", bit(4)], ["Coupled", (state) => Boolean(state.master)], ["Compensating", bit(13)], ["External setpoints", bit(14)], ["Friction compensation", bit(16)]],
+  "Status, physical": [["Not moving", (state) => Math.abs(state.set_velocity || 0) < 1e-9], ["Moving forward", moves(1)], ["Moving backward", moves(-1)], ["Constant velocity", bit(12)], ["In target position", bit(4)], ["In position range", inRange], ["Coupled", (state) => Boolean(state.master)], ["Compensating", bit(13)], ["External setpoints", bit(14)], ["Friction compensation", bit(16)]],
   Enabling: [["Controller", (state) => state.state !== "Disabled"], ["Feed forward", (state) => !bit(20)(state)], ["Feed backward", (state) => !bit(21)(state)], ["Waits for feed", bit(17), true]],
 };
 
@@ -38,6 +40,7 @@ export function onlineAxis(app, unit) {
     show("Velocity command", velocity, (state) => fixed(state.command_velocity, 3)),
     show("Torque", "Nm, N", (state) => short(state.torque)),
     show("Feedforward", "", (state) => percent(state.feedforward)),
+    show("Kv", "1/s", () => short(unit.limits?.kv)),
     show("Kv, from lag", "1/s", (state) => (Math.abs(state.following_error) > 1e-6 ? short(state.set_velocity / state.following_error, 4) : "–")),
     show("Reference velocity", velocity, () => fixed(unit.limits?.reference_velocity, 2)),
     show("Largest velocity", velocity, () => fixed(unit.limits?.velocity, 2)),
@@ -59,11 +62,11 @@ export function onlineAxis(app, unit) {
   function update() {
     const state = store.state(unit.name);
     if (typeof state.following_error === "number") {
-      lag.min = Math.min(lag.min, state.following_error);
-      lag.max = Math.max(lag.max, state.following_error);
+      lag.min = Math.min(lag.min, state.following_error, state.lag_low ?? Infinity);
+      lag.max = Math.max(lag.max, state.following_error, state.lag_high ?? -Infinity);
     }
     rows.forEach((row) => row(state));
-    bits.forEach((one) => one.update(state));
+    bits.forEach((one) => one.update(state, unit));
   }
   const end = store.on("state", update);
   update();
@@ -74,9 +77,9 @@ function bitList(title, words) {
   const items = words.map(([word, , isBad]) => h("li", { class: isBad ? "bad" : "" }, word, h("span", { class: "visually-hidden" })));
   return {
     element: panel(title, h("ul", { class: "bits" }, items)),
-    update(state) {
+    update(state, unit) {
       words.forEach(([, isOn], i) => {
-        const on = Boolean(isOn(state));
+        const on = Boolean(isOn(state, unit));
         if (items[i].classList.contains("on") === on && items[i].lastChild.textContent) return;
         items[i].classList.toggle("on", on);
         items[i].lastChild.textContent = on ? ": on" : ": off";
