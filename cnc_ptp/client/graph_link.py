@@ -39,7 +39,7 @@ from cnc_ptp.nodes.topics import BLOCK_CLASSES, BLOCK_TYPES, BLOCKS, COMMAND, EV
 from cnc_ptp.parameters import ParameterSet, read_machine
 from cnc_ptp.parameters.errors import Place
 from cnc_ptp.parameters.read.parameter_set import Given
-from cnc_ptp.protocol.blocks import CommandRecord, CycleBlock, Event, read_values
+from cnc_ptp.protocol.blocks import CommandRecord, CycleBlock, Event, PlcBlock, read_values
 from cnc_ptp.protocol.jobs import JobStatus
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.recording.overwriting import check_recording
@@ -48,6 +48,9 @@ from cnc_ptp.wire.block_codec import codec_of
 
 FROM_NOW_ON = QoSProfile(depth=1000, reliability=QoSReliabilityPolicy.RELIABLE)
 SomeLink = TypeVar("SomeLink", bound="GraphLink")
+UNITS_STAND = "its units stand"
+AFTER_END = 0.3
+"""Seconds without a message after the block of the PLC that ends a run: the last ones of other units have come."""
 LONGEST_TURN = 0.1
 """Seconds after which somebody who waits looks around, whatever has come."""
 
@@ -140,14 +143,21 @@ class GraphLink(Link):
         """After each look for what has come."""
         for jogging in self._jogs.values():
             jogging.go_on(self.seen)
-        if self._is_open and time.monotonic() - self._heard > SILENCE:
-            self._gone = self._gone or CncError(GONE, GONE_TEXT, "what it does is not known")
+        if self._is_open and self._gone is None:
+            self._gone = self._end_of_run(time.monotonic() - self._heard)
         with self._changed:
             self._changed.notify_all()
         sleepers, self._sleepers = self._sleepers, []
         for loop, future in sleepers:
             with suppress(RuntimeError):  # the loop has ended meanwhile
                 loop.call_soon_threadsafe(wake, future)
+
+    def _end_of_run(self, silent: float) -> CncError | None:
+        """Of a run that nothing has come of for `silent` seconds; one of this link says itself how it has ended."""
+        plc = self.seen.blocks.get(PLC)
+        if self._graph is None and silent > AFTER_END and isinstance(plc, PlcBlock) and plc.run_done:
+            return CncError(GONE, "the machine has ended: its run has ended", UNITS_STAND)
+        return CncError(GONE, GONE_TEXT, "what it does is not known") if silent > SILENCE else None
 
     # commands
 
@@ -220,7 +230,7 @@ class GraphLink(Link):
     def _require_machine(self) -> None:
         if self._graph is not None and self._is_open and self._gone is None and self._graph.has_ended:
             why = "; ".join(self._graph.failures) or "its run has ended"
-            self._gone = CncError(GONE, f"the machine has ended: {why}", "its units stand")
+            self._gone = CncError(GONE, f"the machine has ended: {why}", UNITS_STAND)
         if self._thread.failure is not None:
             raise CncError(GONE, f"the client has failed: {self._thread.failure!r}", "its units continue")
         if self._gone is not None:
@@ -244,7 +254,7 @@ class GraphLink(Link):
                 self._graph.end()
             self._thread.close()
         if self._graph is not None and self._graph.failures and was_gone is None:
-            raise CncError(GONE, f"the machine has ended: {'; '.join(self._graph.failures)}", "its units stand")
+            raise CncError(GONE, f"the machine has ended: {'; '.join(self._graph.failures)}", UNITS_STAND)
 
     def _stop(self, graph: StartedGraph) -> None:
         """By its PLC: the run is a good one then."""

@@ -13,7 +13,7 @@ import time
 import psutil
 import pytest
 from client_stories import BLOCKS_EXPECTED, EXPECTED, block_story, refusal, setpoints, story
-from graph_support import ROOT, one_axis_machine, small_machine, verified, wait_until_gone
+from graph_support import ROOT, Running, one_axis_machine, small_machine, verified, wait_until_gone
 
 from cnc_ptp.client import CncError, JobStatus, Machine, MC_ReadParameter
 from cnc_ptp.client.graph_link import GraphLink
@@ -342,16 +342,30 @@ def test_a_stopped_client_does_not_know_how_its_job_has_ended(m, mill):
 
 
 @pytest.mark.long
-def test_a_machine_that_falls_silent_is_gone(ros_domain, folder):
+def test_a_machine_that_ends_says_so_to_other_clients(ros_domain, folder):
     machine = one_axis_machine(folder)
-    with Machine.start(machine, namespace="silent", composed=True) as m, Machine.connect(namespace="silent") as other:
+    with Machine.start(machine, namespace="ends", composed=True) as m, Machine.connect(namespace="ends") as other:
         job = other.x.jog(10).wait(30.0)
         m.close()
-        assert refusal(lambda: other.run_for(60.0))[:2] == (
-            26171,
-            "nothing new for 5 s: the machine no longer runs; what it does is not known",
-        )
+        begin = time.monotonic()
+        text = "the machine has ended: its run has ended; its units stand"
+        assert refusal(lambda: other.run_for(60.0))[:2] == (26171, text)
+        assert time.monotonic() - begin < 4.0
     assert job.status is JobStatus.ABORTED
+
+
+@pytest.mark.long
+def test_a_machine_that_falls_silent_is_gone(ros_domain, folder):
+    run = Running(one_axis_machine(folder), "--composed", "--stay", "--namespace", "silent")
+    try:
+        with Machine.connect(namespace="silent", timeout=60.0) as other:
+            run.process.kill()
+            assert refusal(lambda: other.run_for(60.0))[:2] == (
+                26171,
+                "nothing new for 5 s: the machine no longer runs; what it does is not known",
+            )
+    finally:
+        run.end()
 
 
 def test_a_unit_that_says_nothing(m, monkeypatch):

@@ -3,6 +3,7 @@
 import asyncio
 import signal
 import ssl
+import subprocess
 import time
 
 import psutil
@@ -10,7 +11,7 @@ import pytest
 import trustme
 from aiohttp import ClientSession, CookieJar
 from aiohttp.test_utils import unused_port
-from graph_support import Running, small_machine, verified
+from graph_support import Running, command, small_machine, verified
 from web_support import Page
 
 from cnc_ptp.recording.reader import read_recording
@@ -148,6 +149,56 @@ def test_a_run_is_killed_and_its_server_ends(ros_domain, machine):
         server.wait(30)
     finally:
         run.end()
+
+
+def test_pages_that_are_older_than_the_graph_and_outlive_it(ros_domain, machine):
+    """`cnc_ptp web` alone: a page without a machine, one that comes, its end, and the next one."""
+    port = unused_port()
+    server = subprocess.Popen(command("web", "--port", port), stdout=subprocess.PIPE, text=True)
+
+    async def operate(page):
+        await page.wait_for("back")
+        hello = await page.wait_for("hello", lambda hello: hello["machine"])
+        assert [unit["name"] for unit in hello["machine"]["units"] if unit["kind"] == "axis"] == ["x", "y"]
+        assert (await page.ask("take_command"))["ok"]
+        answer = await page.command("x", "move_absolute", target=2)
+        assert answer["ok"], answer
+        await page.state_of("x", lambda x: x.get("set_position") == 2.0)
+
+    async def end(page, run):
+        run.process.send_signal(signal.SIGINT)
+        gone = await page.wait_for("gone")
+        assert gone["number"] == 26171 and gone["text"].startswith("the machine has ended"), gone
+        refused = await page.command("x", "move_absolute", target=1)
+        assert not refused["ok"] and refused["number"] == 26171, refused
+        assert await asyncio.to_thread(run.process.wait, 30) == 0
+
+    async def story():
+        async with ClientSession(cookie_jar=CookieJar(unsafe=True)) as session:
+            address = f"http://127.0.0.1:{port}"
+            await session.get(address)
+            token = (await (await session.get(f"{address}/api/session")).json())["token"]
+            page = Page(await session.ws_connect(f"{address}/ws"))
+            await page.send(type="hello", token=token)
+            hello = await page.wait_for("hello")
+            assert hello["machine"] is None and hello["why"]["number"] in (26135, 26244), hello
+            refused = await page.command("x", "move_absolute", target=1)
+            assert not refused["ok"] and refused["number"] == 26244, refused
+            for _ in range(2):
+                run = Running(machine, "--stay")
+                try:
+                    await operate(page)
+                    await end(page, run)
+                finally:
+                    run.end()
+
+    try:
+        assert f"http://localhost:{port}" in server.stdout.readline()
+        asyncio.run(story())
+        server.send_signal(signal.SIGTERM)
+        assert server.wait(15) == 0
+    finally:
+        server.kill()
 
 
 def test_pages_of_a_run_with_tls_on_another_address(ros_domain, machine, folder):
