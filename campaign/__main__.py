@@ -1,4 +1,7 @@
-"""`python -m campaign`: kills processes of running machines at random moments, and checks what became of them."""
+"""`python -m campaign`: kills, load, random commands and mutated inputs, and what became of the machine.
+
+The parts share the time: half of it for kills, a quarter each for commands and inputs; load takes about two minutes.
+"""
 
 from __future__ import annotations
 
@@ -8,75 +11,124 @@ import platform
 import sys
 import tempfile
 import time
+from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import click
 from rich.console import Console
 
-from campaign import kills, load
+from bench.fuzz import HEAD, row
+from bench.fuzzing import engine
+from bench.fuzzing.kinds import KINDS
+from bench.random_commands import lives
+from campaign import kills
+from campaign.conditions import conditions
 from campaign.table import summary, table
+
+PARTS = ("kills", "load", "commands", "inputs")
+SHARES = {"kills": 0.5, "commands": 0.25, "inputs": 0.25}
+"""Of the time; load takes what it takes."""
 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
-@click.option("--seed", type=int, default=1, help="Which faults come, and when.")
+@click.argument("parts", nargs=-1, type=click.Choice(PARTS), metavar="[kills|load|commands|inputs]...")
+@click.option("--seed", type=int, default=1, help="Which faults, commands and inputs come, and when.")
 @click.option("--count", type=click.IntRange(1), default=1_000_000, help="Faults at most.")
 @click.option("--first", type=click.IntRange(0), default=0, help="Number of the first fault of the seed.")
-@click.option("--minutes", type=click.FloatRange(0.0), default=5.0, help="Time after which no more runs are started.")
+@click.option("--minutes", type=click.FloatRange(0.0), default=6.0, help="For all parts but load.")
 @click.option("--hours", type=click.FloatRange(0.0), help="The same in hours.")
 @click.option("--json", "json_file", type=click.Path(dir_okay=False), help="File for the rows, one a line.")
 @click.option("--keep", type=click.Path(file_okay=False), help="Folder for the recordings of runs with problems.")
-@click.option("--load", "with_load", is_flag=True, help="Load, time and company instead of kills.")
-@click.option("--set-clock", is_flag=True, help="With --load: sets the wall clock of this computer; needs root.")
-@click.option("--soak", type=click.FloatRange(0.0), default=0.0, help="Minutes of a soak behind them.")
-def main(
-    seed: int,
-    count: int,
-    first: int,
-    minutes: float,
-    hours: float | None,
-    json_file: str | None,
-    keep: str | None,
-    with_load: bool,
-    set_clock: bool,
-    soak: float,
-) -> None:
-    """Kill processes of running machines and check that nothing is lost: exit status 1 if anything was."""
-    console = Console(highlight=False, width=None if sys.stdout.isatty() else 160)
+@click.option("--set-clock", is_flag=True, help="load: sets the wall clock of this computer, too; needs root.")
+@click.option("--soak", type=click.FloatRange(0.0), default=0.0, help="load: minutes of a soak at its end.")
+def main(parts: Sequence[str], hours: float | None, minutes: float, keep: str | None, **options: Any) -> None:
+    """Put machines under the faults of PARTS, all without one: exit status 1 if anything was lost."""
     folder = Path(keep or tempfile.mkdtemp(prefix="campaign_"))
-    if with_load:
-        sys.exit(measure_load(console, folder, soak, json_file, sets_clock=set_clock))
-    rows: list[kills.Row] = []
-    for row in kills.campaign(seed, count, hours * 60.0 if hours else minutes, folder, first=first):
-        rows.append(row)
-        fault = row.fault
-        held = f" {fault.hold:g} s" if fault.hold else ""
-        what = f"{fault.case}: {fault.signal}{held} to {fault.node} after {fault.moment:g} s"
-        console.print(f"{first + len(rows) - 1:4} {what}: {row.outcome}{''.join(f'; {each}' for each in row.problems)}")
-        add_line(json_file, {"seed": seed, "number": first + len(rows) - 1} | row.as_json())
-    console.print(table(rows))
-    console.print(summary(rows))
+    chosen = parts or PARTS
+    timed = sum(SHARES.get(part, 0.0) for part in chosen) or 1.0
+    seconds = 60.0 * (hours * 60.0 if hours else minutes)
+    campaign = Campaign(folder, options)
+    good = [getattr(campaign, part)(seconds * SHARES.get(part, 0.0) / timed) for part in chosen]
     date = time.strftime("%Y-%m-%d", time.gmtime())
     machine = f"{os.cpu_count()} processors, load {os.getloadavg()[0]:.1f}, Python {platform.python_version()}"
-    console.print(f"{date}, seed {seed}, {machine}; recordings of runs with problems: {folder}")
-    sys.exit(any(not row.good for row in rows))
+    campaign.say(f"{date}, seed {options['seed']}, {machine}; recordings of runs with problems: {folder}")
+    sys.exit(not all(good))
 
 
-def measure_load(console: Console, folder: Path, soak: float, json_file: str | None, *, sets_clock: bool) -> bool:
-    """True if anything was lost."""
-    bad = False
-    for row in load.conditions(folder, minutes=soak, sets_clock=sets_clock):
-        figures = ", ".join(f"{name} {value:g}" for name, value in row.figures.items())
-        console.print(f"{row.name}: {figures}{''.join(f'; {each}' for each in row.problems)}")
-        add_line(json_file, row.as_json())
-        bad = bad or bool(row.problems)
-    return bad
+class Campaign:
+    """Its parts; each gives True if nothing was lost."""
 
+    def __init__(self, folder: Path, options: dict[str, Any]) -> None:
+        """`options` as of the command."""
+        self._folder, self._options = folder, options
+        self._seed: int = options["seed"]
+        self._console = Console(highlight=False, width=None if sys.stdout.isatty() else 160)
 
-def add_line(json_file: str | None, row: dict[str, Any]) -> None:
-    if json_file is not None:
-        with Path(json_file).open("a", encoding="utf-8") as stream:
-            stream.write(json.dumps(row) + "\n")
+    def say(self, text: Any) -> None:
+        self._console.print(text, markup=False) if isinstance(text, str) else self._console.print(text)
+
+    def kills(self, seconds: float) -> bool:
+        """Processes of running machines."""
+        first, rows = self._options["first"], []
+        for fault_row in kills.campaign(self._seed, self._options["count"], seconds / 60.0, self._folder, first=first):
+            number = first + len(rows)
+            rows.append(fault_row)
+            fault = fault_row.fault
+            held = f" {fault.hold:g} s" if fault.hold else ""
+            what = f"{fault.case}: {fault.signal}{held} to {fault.node} after {fault.moment:g} s"
+            self.say(f"{number:4} {what}: {fault_row.outcome}{''.join(f'; {each}' for each in fault_row.problems)}")
+            self._add({"seed": self._seed, "number": number} | fault_row.as_json())
+        self.say(table(rows))
+        self.say(summary(rows))
+        return all(each.good for each in rows)
+
+    def load(self, _seconds: float) -> bool:
+        """Load, time and company."""
+        good = True
+        soak, sets_clock = self._options["soak"], self._options["set_clock"]
+        for condition in conditions(self._folder, minutes=soak, sets_clock=sets_clock):
+            figures = ", ".join(f"{name} {value:g}" for name, value in condition.figures.items())
+            self.say(f"{condition.name}: {figures}{''.join(f'; {each}' for each in condition.problems)}")
+            self._add(condition.as_json())
+            good = good and not condition.problems
+        return good
+
+    def commands(self, seconds: float) -> bool:
+        """Random commands to machines offline."""
+        end, total, bad = time.monotonic() + seconds, Counter[str](), 0
+        for machine in lives(sys.maxsize, self._seed):
+            total += machine.counts
+            bad += bool(machine.violations)
+            for text in machine.violations[:5]:
+                self.say(text)
+            if time.monotonic() > end:
+                break
+        self.say(f"random commands: {', '.join(f'{n} {name}' for name, n in total.items())}; {bad} with a violation")
+        self._add({"name": "random commands", "good": not bad, "seed": self._seed, **total})
+        return not bad
+
+    def inputs(self, seconds: float) -> bool:
+        """Mutated inputs of all kinds."""
+        self.say(HEAD)
+        good = True
+        for name, kind in KINDS.items():
+            with tempfile.TemporaryDirectory(prefix="fuzz_") as folder:
+                verdict = engine.run(kind, self._seed, sys.maxsize, Path(folder), seconds=seconds / len(KINDS))
+            self.say(row(verdict))
+            for finding in verdict.findings:
+                self.say(str(finding))
+            good = good and not verdict.findings
+            counts = {"count": verdict.count, "refused": verdict.refused, "undocumented": verdict.undocumented}
+            self._add({"name": f"inputs: {name}", "good": not verdict.findings, "seed": self._seed, **counts})
+        return good
+
+    def _add(self, line: dict[str, Any]) -> None:
+        """To the file of the rows."""
+        if self._options["json_file"] is not None:
+            with Path(self._options["json_file"]).open("a", encoding="utf-8") as stream:
+                stream.write(json.dumps(line) + "\n")
 
 
 if __name__ == "__main__":

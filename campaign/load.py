@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import subprocess
@@ -35,6 +36,8 @@ WATCHDOG = 26101
 ROUND = 3.0
 """Seconds that a round of the program takes at least."""
 SUBSCRIBERS, FOREIGN_NODES = 200, 50
+FLOOD = 0.2
+"""Seconds for each topic and each service."""
 SETTLED, SETTLING = 0.2, 300.0
 """Part of a soak, and seconds at most, after which memory must not grow any more."""
 SAMPLING = 5.0
@@ -56,12 +59,12 @@ class LoadRow:
 
 
 @contextmanager
-def started(name: str, folder: Path, domain: int) -> Iterator[Graph]:
+def started(name: str, folder: Path, domain: int, *options: str) -> Iterator[Graph]:
     """A run of a case that has begun."""
     case = case_of(name)
     place = folder / f"{name}_{domain}"
     place.mkdir(parents=True, exist_ok=True)
-    graph = Graph(case.words(place), place / "run.mcap", domain=domain)
+    graph = Graph([*case.words(place), *options], place / "run.mcap", domain=domain)
     try:
         if not graph.wait_for_start():
             raise RuntimeError(f"the run did not start: {graph.output[-500:]}")
@@ -74,8 +77,11 @@ def case_of(name: str) -> Case:
     return next(case for case in CASES if case.name == name)
 
 
-def finished(row: LoadRow, graph: Graph, name: str) -> Recorded:
-    """Interrupts a run and checks that nothing but that has stopped it."""
+def finished(row: LoadRow, graph: Graph, name: str, *, errors_count: bool = True) -> Recorded:
+    """Interrupts a run and checks that nothing but that has stopped it.
+
+    `errors_count`: an event of an error is a problem; not where somebody has commanded what comes to one.
+    """
     if not graph.running:
         row.problems.append(f"the run has ended by itself: {graph.output[-400:]}")
     graph.interrupt()
@@ -85,18 +91,25 @@ def finished(row: LoadRow, graph: Graph, name: str) -> Recorded:
     if orphans := graph.orphans():
         row.problems.append(f"orphans: {orphans}")
     recorded = read_recording(graph.recording)
-    machine = read_machine(str(case_of(name).machine))
-    row.problems += [*motion.problems(recorded, machine, ended=True), *motion.violations(graph.recording)]
+    row.problems += checked_motion(graph, name, recorded)
     errors = {event.text for event in recorded.events if event.severity == Severity.ERROR and event.error_id != 26106}
-    row.problems += sorted(errors)
+    row.problems += sorted(errors) if errors_count else []
     newest = {each.name: each.values for each in recorded.diagnostics}
+    lost = sum(int(values.get(LOST_BLOCKS, 0)) for values in newest.values())
+    row.problems += [f"{lost} blocks were lost"] if lost else []
     row.figures |= {
         "cycles": recorded.last_cycle + 1,
-        "lost blocks": sum(int(values.get(LOST_BLOCKS, 0)) for values in newest.values()),
+        "lost blocks": lost,
         "largest lateness [ms]": largest_lateness(recorded),
         "load": round(os.getloadavg()[0], 1),
     }
     return recorded
+
+
+def checked_motion(graph: Graph, name: str, recorded: Recorded) -> list[str]:
+    """What is wrong with the motion of a run that has come to its end."""
+    machine = read_machine(str(case_of(name).machine))
+    return [*motion.problems(recorded, machine, ended=True), *motion.violations(graph.recording)]
 
 
 def busy_processors(folder: Path, domain: int) -> LoadRow:
@@ -232,6 +245,22 @@ def company(what: str, number: int, folder: Path, domain: int) -> LoadRow:
     return row
 
 
+def floods(folder: Path, domain: int) -> LoadRow:
+    """1,000 messages a second on each topic that somebody may write, and calls of each service."""
+    row = LoadRow("floods of each topic and service")
+    with started("program", folder, domain, "--stay") as graph:  # what comes may end the program
+        machine = str(case_of("program").machine)
+        words = [sys.executable, "-m", "campaign.flood", machine, str(FLOOD)]
+        environment = os.environ | {"ROS_DOMAIN_ID": str(domain)}
+        done = subprocess.run(words, env=environment, capture_output=True, text=True, timeout=600, check=False)
+        counts = json.loads(done.stdout.splitlines()[-1]) if done.returncode == 0 else {}
+        row.figures |= {name: float(count) for name, count in counts.items()}
+        if done.returncode or counts["unanswered"]:
+            row.problems.append(f"calls without an answer: {counts} {done.stderr[-300:]}")
+        finished(row, graph, "program", errors_count=False)
+    return row
+
+
 def two_machines(folder: Path, domain: int) -> LoadRow:
     """The same program on two domains at once: equal to the bit, as far as both have come."""
     row = LoadRow("two machines on two domains")
@@ -285,8 +314,6 @@ def figures_of(process: psutil.Process) -> tuple[float, int, int]:
 def grown(row: LoadRow, samples: list[dict[str, tuple[float, int, int]]]) -> None:
     """The growth from the end of the first five minutes, or fifth, on; lost blocks."""
     settled = samples[min(int(len(samples) * SETTLED), int(SETTLING / SAMPLING)) :]
-    if row.figures.get("lost blocks"):
-        row.problems.append(f"{row.figures['lost blocks']:g} blocks were lost")
     for name in settled[0]:
         memory, handles, threads = (settled[-1][name][n] - settled[0][name][n] for n in range(3))
         row.figures[f"{name}: MB more"] = round(memory, 2)
@@ -299,19 +326,3 @@ def grown(row: LoadRow, samples: list[dict[str, tuple[float, int, int]]]) -> Non
 def largest_lateness(recorded: Recorded) -> float:
     """Of any block, ms."""
     return max((float(each.values.get(LATENESS_MAX, 0.0)) for each in recorded.diagnostics), default=0.0)
-
-
-def conditions(folder: Path, *, minutes: float, sets_clock: bool = False) -> Iterator[LoadRow]:
-    """All of them, one after another; `minutes` of the soak, 0: none. Raises PermissionError for the wall clock."""
-    domain = free_domain(os.getpid())
-    yield busy_processors(folder, domain)
-    yield memory_pressure(folder, domain)
-    yield suspended(folder, domain)
-    if sets_clock:
-        yield wall_clock_set(folder, domain)
-    yield company("subscribers", SUBSCRIBERS, folder, domain)
-    yield company("foreign", FOREIGN_NODES, folder, domain)
-    yield company("late", 1, folder, domain)
-    yield two_machines(folder, domain)
-    if minutes:
-        yield soak(minutes, folder, domain)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import sys
 from collections.abc import Sequence
 from typing import Any
 
 import click
 
-from cnc_ptp.commands.console import print_error
+from cnc_ptp.commands.console import RUN_FAILED, print_error
 from cnc_ptp.errors import WRONG_INPUT, CncError
 from cnc_ptp.ros_arguments import RosArguments
 from cnc_ptp.ros_arguments import split as split_ros_arguments
@@ -31,6 +33,7 @@ WITHOUT_NODES = {
 """What commands that start no nodes do not do with a machine file that is wrong."""
 
 
+NO_ROOM_TO_PRINT = 26208
 OF_ANOTHER = "enter"
 """The command whose arguments are another command line: ROS arguments among them are for that one."""
 
@@ -70,6 +73,13 @@ class Group(click.Group):
             effect = WITHOUT_NODES.get(context.find_root().invoked_subcommand or "")
             print_error(error if effect is None else error.meaning(effect))
             sys.exit(WRONG_INPUT)
+        except OSError as error:  # of a file that the command writes it is a CncError
+            if error.errno != errno.ENOSPC:
+                raise
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python would try again at its end
+            reason = f"standard output cannot be written: {error.strerror}"
+            print_error(CncError(NO_ROOM_TO_PRINT, reason, "what the command has printed is incomplete"))
+            sys.exit(RUN_FAILED)
 
 
 class WordsOrCommand(Group):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import operator
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
@@ -125,7 +126,8 @@ def read_goal(text: str, machine: MachineParameters) -> Goal:
     if len(body) > LONGEST:
         raise CncError(BAD_GOAL, f"a goal has {len(body)} characters, at most {LONGEST}", NOTHING, where="--goal")
     try:
-        expression = ast.parse(body, mode="eval").body
+        with warnings.catch_warnings(action="ignore"):  # of Python, about numbers like 1_a
+            expression = ast.parse(body, mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         raise bad(body, "is no expression, as max(following_error.x)") from None
     reader = _Reader(body, machine)

@@ -1,19 +1,26 @@
 """The checks of the campaign find what they are to find, in recordings that were made for it."""
 
+import json
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
+from bench.fuzzing.kinds import KINDS
+from campaign import __main__ as command
 from campaign import kills, load, motion
 from campaign.cases import Link
+from campaign.conditions import with_disk
+from campaign.disks import NoDiskError
 from campaign.graph import Graph, size_of
 from campaign.kills import HOLD, KILL, TERM, Fault, Row
 from campaign.load import case_of
 from campaign.table import summary, table
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import Event, Severity
+from cnc_ptp.recording.node_figures import LATENESS_MAX, LOST_BLOCKS
 from cnc_ptp.recording.reader import DriveStop, Recorded
 
 MACHINE = read_machine(str(Path(__file__).parents[2] / "config" / "gantry.yaml"))
@@ -233,3 +240,80 @@ class Ended:
 )
 def test_what_became_of_a_run(name, node, graph, outcome):
     assert kills.await_end(graph, Fault("ptp", node, name, 0.1, 1.0)) == outcome
+
+
+class MadeGraph:
+    """A run that has come to its end, with a recording that was made."""
+
+    running, output = True, "all is well"
+
+    def __init__(self, folder, left=()):
+        self.recording, self.left = folder / "run.mcap", [*left]
+
+    def interrupt(self):
+        self.running = False
+
+    def wait(self, _seconds):
+        return True
+
+    def orphans(self):
+        return self.left
+
+
+def finished_row(monkeypatch, tmp_path, made, left=()):
+    monkeypatch.setattr(load, "read_recording", lambda _path: made)
+    monkeypatch.setattr(load, "checked_motion", lambda *_: [])
+    row = load.LoadRow("made")
+    load.finished(row, MadeGraph(tmp_path, left), "program")
+    return row
+
+
+def test_lost_blocks_errors_and_orphans_are_problems_of_a_load(monkeypatch, tmp_path):
+    made = recorded(rows(ramp()))
+    node = SimpleNamespace(name="x", values={LOST_BLOCKS: "3", LATENESS_MAX: "12.5"})
+    made.diagnostics = [SimpleNamespace(name="x", values={LOST_BLOCKS: "1"}), node]
+    made.events = [
+        Event(5, "x", Severity.ERROR, 23055, "the pair came apart"),
+        Event(6, "supervisor", Severity.ERROR, 26106, "interrupted"),
+        Event(7, "y", Severity.WARNING, 26119, "nothing bad"),
+    ]
+    row = finished_row(monkeypatch, tmp_path, made, left=["y"])
+    assert row.problems == ["orphans: ['y']", "the pair came apart", "3 blocks were lost"]
+    assert (row.figures["lost blocks"], row.figures["largest lateness [ms]"]) == (3, 12.5)
+
+
+def test_what_a_soak_may_grow_by():
+    row, still = load.LoadRow("soak"), (50.0, 10, 4)
+    samples = [{"x": (50.0 + 0.3 * n, 10, 4), "y": still, "z": still} for n in range(10)]
+    samples[-1]["y"] = (50.9, 11, 5)
+    load.grown(row, samples)
+    assert row.problems == ["x has grown by 2.10 MB", "y has 1 more file handles, 1 more threads"]
+    assert row.figures == {"x: MB more": 2.1, "y: MB more": 0.9, "z: MB more": 0.0}
+
+
+def test_a_disk_that_cannot_be_mounted_is_said(monkeypatch):
+    def none():
+        raise NoDiskError("mount -t: only root can do that")
+
+    assert with_disk("slow disk", none).name == "slow disk: not tried, mount -t: only root can do that"
+
+
+@pytest.mark.parametrize("good", [True, False])
+def test_all_parts_are_run_and_their_rows_written(good, monkeypatch, tmp_path):
+    row = Row(Fault("program", "y", KILL, 0.0, 1.0), "stopped", problems=[] if good else ["x: still moves"])
+    monkeypatch.setattr(kills, "campaign", lambda *_, **__: iter([row]))
+    monkeypatch.setattr(command, "conditions", lambda *_, **__: iter([load.LoadRow("busy", {"cycles": 1.0})]))
+    kinds = {"users": KINDS["users"]}
+    monkeypatch.setattr(command, "KINDS", kinds)
+    file = tmp_path / "rows.jsonl"
+    result = CliRunner().invoke(command.main, ["--minutes", "0.001", "--json", str(file), "--keep", str(tmp_path)])
+    assert result.exit_code == int(not good), result.output
+    names = [json.loads(line).get("name", "fault") for line in file.read_text().splitlines()]
+    assert names == ["fault", "busy", "random commands", "inputs: users"]
+    assert "busy: cycles 1" in result.output and "random commands: " in result.output
+
+
+def test_a_part_can_be_chosen(tmp_path):
+    result = CliRunner().invoke(command.main, ["commands", "--minutes", "0.001", "--seed", "3"])
+    assert result.exit_code == 0, result.output
+    assert "; 0 with a violation" in result.output and "faults" not in result.output

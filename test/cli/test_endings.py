@@ -151,3 +151,16 @@ def test_a_terminal_sees_block_position_and_feed():
     text = shown.decode()
     assert "block " in text and "/" in text and " line " in text
     assert " X" in text and " Y" in text and " Z" in text and " F" in text
+
+
+def test_standard_output_on_a_full_disk_is_no_traceback(tmp_path):
+    recording = tmp_path / "run.mcap"
+    job = command("simulate", MILL, "--program", BRACKET, "--record", recording)
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(job, stdout=full, stderr=subprocess.PIPE, text=True, timeout=120, check=False)
+    assert (done.returncode, done.stderr) == (
+        1,
+        "P-ERR-26208 standard output cannot be written: No space left on device; what the command has printed is "
+        "incomplete\n",
+    )
+    assert call("verify", recording).exit_code == 0

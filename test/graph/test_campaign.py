@@ -1,12 +1,14 @@
 """A short campaign: a few faults of each kind, at moments that a seed gives; `make campaign` is the long one."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from campaign import kills, load
+from campaign import disks, kills, load
 from campaign.cases import CASES
 from campaign.kills import HOLD, KILL, TERM, Fault
+from campaign.load import LoadRow
 
 FAULTS = (
     Fault("program", "y", KILL, 0.0, 2.345),
@@ -33,6 +35,25 @@ def test_a_fault(fault: Fault, tmp_path: Path, ros_domain: int) -> None:
 def test_a_suspended_graph_goes_on(tmp_path: Path, ros_domain: int) -> None:
     row = load.suspended(tmp_path, ros_domain)
     assert row.problems == [] and row.figures["cycles"] > 4000
+
+
+@pytest.mark.long
+def test_floods_of_each_topic_and_service(tmp_path: Path, ros_domain: int) -> None:
+    row = load.floods(tmp_path, ros_domain)
+    assert row.problems == [] and row.figures["unanswered"] == 0.0
+    assert row.figures["messages"] > 3000.0 and row.figures["calls"] > 3000.0
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("condition", [disks.full_disk, disks.slow_disk], ids=lambda each: each.__name__)
+def test_a_disk_that_is_full_or_slow(
+    condition: Callable[[Path, int], LoadRow], tmp_path: Path, ros_domain: int
+) -> None:
+    try:
+        row = condition(tmp_path, ros_domain)
+    except disks.NoDiskError as error:
+        pytest.skip(str(error))
+    assert row.problems == [] and row.figures["cycles"] > 500.0
 
 
 @pytest.mark.long

@@ -136,6 +136,10 @@ REFUSALS = {
         "25007 t:1:13: tool T5, radius: value true is a boolean, a number is needed",
     ),
     "no finite number": ("5: {radius: .inf}", "25008 t:1:13: tool T5, radius: value inf is not a finite number"),
+    "larger than any number": (
+        f"5: {{radius: {10**400}}}",
+        f"25008 t:1:13: tool T5, radius: value {10**56}... is not a finite number",
+    ),
     "too long": (
         "5: {length: 214748.4}",
         "25008 t:1:13: tool T5, length: value 214748.4 is above the maximum 214748.3647 mm",

@@ -81,9 +81,11 @@ def test_maximise(mill):
         ("'a'", "has ''a'', which a goal cannot have"),
         ("True", "has 'True', which a goal cannot have"),
         ("1 if 1 else 2", "has '1 if 1 else 2', which a goal cannot have"),
+        ("1or 2", "has '1 or 2', which a goal cannot have"),
         ("7 // 2", "has '7 // 2', which a goal cannot have"),
     ],
 )  # fmt: skip
+@pytest.mark.filterwarnings("error")
 def test_expressions_that_are_refused(mill, text, reason):
     with pytest.raises(CncError) as caught:
         read_goal(text, mill)

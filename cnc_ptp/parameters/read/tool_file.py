@@ -24,7 +24,7 @@ from cnc_ptp.parameters.errors import Place, Problem
 from cnc_ptp.parameters.read.named_files import file_text, given_before
 from cnc_ptp.parameters.read.parameter_set import Given, ParameterSet
 from cnc_ptp.parameters.read.source import Entry, Reader, Value, is_null, read_events
-from cnc_ptp.parameters.read.values import NEEDED, BadValue, checked_value, described, shown, with_unit
+from cnc_ptp.parameters.read.values import NEEDED, BadValue, as_float, checked_value, described, shown, with_unit
 
 LARGEST_T: Final = 999_999_999
 
@@ -278,7 +278,7 @@ def list_value(declaration: Declaration, field: Field, value: Value) -> Paramete
         return checked_value(declaration, value, "")
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise BadValue(errors.WRONG_TYPE, f"value {shown(value)} is {described(value)}, {NEEDED['float']} is needed")
-    if not math.isfinite(value):
+    if not math.isfinite(as_float(value)):
         raise BadValue(errors.OUT_OF_RANGE, f"value {shown(value)} is not a finite number")
     for limit in declaration.lower:
         if not isinstance(limit.value, str) and value * field.scale < limit.value:
