@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from math import isfinite, isnan
 from numbers import Real
+from reprlib import repr as repr_of
 
 from cnc_ptp.errors import CncError, Value, nearest_name
 from cnc_ptp.machine.wiring import UNKNOWN_UNIT
 from cnc_ptp.protocol.blocks import Event
-from cnc_ptp.protocol.commands import BAD_ARGUMENT
+from cnc_ptp.protocol.commands import BAD_ARGUMENT, is_finite
 
 TIMEOUT = 26170
 GONE = 26171
@@ -26,15 +26,15 @@ def check_seconds(where: str, name: str, value: float | None, effect: str, *, fi
     """Raises CncError 22001 for a time that is no number, or has no end or is below 0 where it must pass."""
     if value is None:
         return
-    if not isinstance(value, Real) or isnan(value):
+    if not isinstance(value, Real) or value != value:
         why = "not finite" if finite and isinstance(value, Real) else "not a number"
-    elif finite and not isfinite(value):
+    elif finite and not is_finite(value):
         why = "not finite"
     elif finite and value < 0.0:
         why = "below 0"
     else:
         return
-    raise CncError(BAD_ARGUMENT, f"{name} = {value!r} is {why}", effect, where=f"{where} refused")
+    raise CncError(BAD_ARGUMENT, f"{name} = {repr_of(value)} is {why}", effect, where=f"{where} refused")
 
 
 def check_callable(where: str, name: str, value: object, effect: str) -> None:

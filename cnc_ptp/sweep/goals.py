@@ -16,6 +16,7 @@ from cnc_ptp.errors import CncError, did_you_mean, nearest
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, SpindleBlock
+from cnc_ptp.protocol.commands import is_finite
 from cnc_ptp.recording.blocks import kind_of
 from cnc_ptp.sweep.faults import BAD_GOAL, NOTHING
 
@@ -147,6 +148,8 @@ class _Reader:
     def is_signal(self, node: ast.expr) -> bool:
         """Whether it is a value per cycle, and not one number. Raises CncError 26179 for what is not permitted."""
         if isinstance(node, ast.Constant) and type(node.value) in (int, float):
+            if not is_finite(node.value):
+                raise bad(self._text, "has a number beyond 1.8e308")
             return False
         if isinstance(node, ast.Name):
             return self._name(node)

@@ -266,6 +266,10 @@ def test_a_wait_has_a_timeout_of_machine_time(m: Machine) -> None:
     ("call", "text"),
     [
         (lambda m: m.run_for(inf), "run_for refused: seconds = inf is not finite; no time has passed"),
+        (
+            lambda m: m.run_for(10**400),
+            "run_for refused: seconds = 100000000000000000...0000000000000000000 is not finite; no time has passed",
+        ),
         (lambda m: m.run_for(nan), "run_for refused: seconds = nan is not finite; no time has passed"),
         (
             lambda m: m.wait_until(lambda: False, timeout=nan),

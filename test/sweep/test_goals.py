@@ -81,6 +81,8 @@ def test_maximise(mill):
         ("'a'", "has ''a'', which a goal cannot have"),
         ("True", "has 'True', which a goal cannot have"),
         ("1 if 1 else 2", "has '1 if 1 else 2', which a goal cannot have"),
+        ("9" * 320, "has a number beyond 1.8e308"),
+        ("1e999 * max(x.velocity)", "has a number beyond 1.8e308"),
         ("1or 2", "has '1 or 2', which a goal cannot have"),
         ("7 // 2", "has '7 // 2', which a goal cannot have"),
     ],
