@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import json
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -231,6 +231,29 @@ def test_an_axis_that_starts_behind_a_stop(inputs: MotionInputs) -> None:
     inputs.orders["y"].append(type(move)(0, "stop", {}))
     (violation,) = check_motion(inputs).violations
     assert (violation.unit, violation.what) == ("y", "moves although it was stopped")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "later", "what"),
+    [
+        ({}, (), {"moves on after a stop"}),
+        ({"deceleration": 1.0}, (), set()),
+        ({"enabled": False}, (), set()),
+        ({}, ("move_velocity",), set()),
+    ],
+    ids=["ignored", "on a long ramp", "taken back", "another command"],
+)
+def test_a_stop_that_is_not_obeyed(
+    arguments: dict[str, Any], later: Sequence[str], what: set[str], tmp_path: Path
+) -> None:
+    """At 50 mm/s for 4 s; a stop in between takes some tenths of a second."""
+    path = make_run(tmp_path / "run.mcap", "- {at: 0.0, to: y, do: move_absolute, target: 190, velocity: 50}\n")
+    with OpenRecording(path) as recording:
+        inputs = read_inputs(recording)
+    (move,) = inputs.orders["y"]
+    kind = "set_emergency_stop" if "enabled" in arguments else "stop"
+    inputs.orders["y"] += [type(move)(1000, kind, arguments), *(type(move)(1001, each, {}) for each in later)]
+    assert {violation.what for violation in check_motion(inputs).violations} == what
 
 
 def test_soft_limits_move_with_set_position(tmp_path: Path) -> None:

@@ -25,6 +25,12 @@ ADDED = ("move_superimposed", "compensation_start")
 STARTS = HELD_OFF["axis"] | {"external_setpoints", "decouple", "set_coupling_factor", "set_cyclic_factor"}
 """Commands that may move an axis that a stop has brought to rest."""
 STOPS = frozenset({"stop", "halt", "emergency_stop", "set_emergency_stop", "reset"})
+RAMPS = frozenset({"stop", "halt", "emergency_stop", "set_emergency_stop"})
+"""Commands after which it must come to rest: by then at the latest …"""
+PATIENCE = 1.5
+"""… times the time of the ramp, and …"""
+BEGINNING = 0.1
+"""… seconds, for the blocks until it begins."""
 DYNAMICS = ("acceleration", "deceleration", "jerk")
 
 
@@ -71,6 +77,7 @@ class AxisCheck:
         self._check_soft_limits()
         self._check_couplings()
         self._check_stops()
+        self._check_obedience()
 
     # what is permitted
 
@@ -235,6 +242,38 @@ class AxisCheck:
         moves = stopped & ~given & (self.points.velocity != 0.0)
         zero = np.zeros(len(self.cycles))
         self.found.above("moves although it was stopped", self.points.velocity, zero, moves, f"{self.points.length}/s")
+
+    def _check_obedience(self) -> None:
+        """An axis that is told to stop comes to rest, unless another command, a path or a master moves it meanwhile."""
+        points, late = self.points, np.zeros(len(self.cycles), dtype=bool)
+        others = self.led | self.on_path | self.external | self.added
+        starts = [order.cycle for order in self.orders if order.command in STARTS]
+        for order in self.orders:
+            rows = self.stretches.of(order.cycle)
+            if order.command not in RAMPS or order.arguments.get("enabled") is False or rows.start == rows.stop:
+                continue
+            begin = rows.start + self._longest_ramp(order, rows.start)
+            again = min((self.stretches.row(cycle) for cycle in starts if cycle >= order.cycle), default=rows.stop)
+            if not others[rows].any():
+                late[begin : min(rows.stop, again)] = True
+        moves = late & (points.velocity != 0.0)
+        self.found.above("moves on after a stop", points.velocity, np.zeros(len(late)), moves, f"{points.length}/s")
+
+    def _longest_ramp(self, order: Order, row: int) -> int:
+        """Rows that a stop may take: the acceleration is turned round, the velocity braked, the acceleration ended.
+
+        A motion may be stopped with the dynamics of the command that began it.
+        """
+        own, points = self.parameters, self.points
+        rests = np.flatnonzero(self.resting[:row])
+        began = self.cycles[rests[-1]] if len(rests) else self.cycles[0]
+        given = [each for each in self.orders if began <= each.cycle <= order.cycle]
+        braking = min(own.deceleration, *(each.number("deceleration") or inf for each in given))
+        jerk = min(own.jerk, *(each.number("jerk") or inf for each in given))
+        acceleration, velocity = abs(points.acceleration[row]), abs(points.velocity[row])
+        turned = (acceleration + braking) / jerk
+        seconds = turned + (velocity + acceleration * turned) / braking + braking / jerk
+        return int((PATIENCE * seconds + BEGINNING) / points.cycle_time)
 
     def _check_soft_limits(self) -> None:
         """No motion further out where the position is beyond a soft limit; soft limits move with set_position."""
