@@ -32,6 +32,7 @@ UNREADABLE = 26001
 NOT_MCAP = 26002
 CORRUPT = 26003
 WITHOUT_CHUNKS = 26206
+CRC_SIZE = 4
 
 Record = TypeVar("Record")
 KNOWN_OPCODES = frozenset(int(opcode) for opcode in Opcode)
@@ -74,11 +75,13 @@ class RecordReader:
         """The record as read by a record class of the library."""
         try:
             return read(ReadDataStream(BytesIO(record.body)))
-        except (struct.error, McapError, UnicodeDecodeError, ValueError) as error:
+        except (struct.error, McapError, UnicodeDecodeError, ValueError, OverflowError) as error:
             raise self.corrupt(record.offset, f"{_name(record.opcode)} record cannot be read: {error!r}") from error
 
     def attachment(self, record: RawRecord) -> Attachment:
-        (crc,) = struct.unpack("<I", record.body[-4:])
+        if len(record.body) < CRC_SIZE:
+            raise self.corrupt(record.offset, f"the attachment has {len(record.body)} bytes, and no CRC")
+        (crc,) = struct.unpack("<I", record.body[-CRC_SIZE:])
         if crc not in (0, zlib.crc32(record.body[:-4])):
             raise self.corrupt(record.offset, "the CRC of the attachment does not match its content")
         attachment: Attachment = self.parse(Attachment.read, record)
@@ -90,7 +93,7 @@ class RecordReader:
         try:
             stream, length = get_chunk_data_stream(chunk)
             data = stream.read(length)
-        except (zstandard.ZstdError, RuntimeError, ValueError, MemoryError) as error:
+        except (zstandard.ZstdError, RuntimeError, ValueError, MemoryError, OverflowError) as error:
             raise self.corrupt(record.offset, f"the chunk cannot be uncompressed: {error}") from error
         if len(data) != chunk.uncompressed_size or chunk.uncompressed_crc not in (0, zlib.crc32(data)):
             raise self.corrupt(record.offset, "the CRC of the chunk does not match its content")

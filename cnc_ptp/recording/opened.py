@@ -207,6 +207,8 @@ class OpenRecording:
         return max(0, low), max(0, high)
 
     def _require_pieces(self, topic: str, start: float | None, end: float | None) -> None:
+        if not self._pieces(topic, 0, 2**64):
+            raise self._missing(f"holds nothing of {topic}")
         if not self._pieces(topic, *self._bounds(start, end)):
             first, last = self.span(topic)
             asked = asked_time(start, end)

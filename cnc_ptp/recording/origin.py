@@ -12,6 +12,7 @@ from pathlib import Path
 import cnc_ptp
 from cnc_ptp import KERNEL
 from cnc_ptp.errors import CncError
+from cnc_ptp.recording.mcap_chunks import CORRUPT
 from cnc_ptp.recording.mcap_file import MISSING
 
 FROM_THE_FUTURE = 26016
@@ -27,6 +28,9 @@ WITHOUT = "not_computable"
 """Key: what is missing for the run to be computed again, if anything."""
 PART = "part"
 """Key: the number of a file of several, from 0 on."""
+TIMES = {"start_ns": 0, "cycle_time_ns": 1}
+"""Times in ns among the metadata of a recording, and the least that they may be."""
+MOST_DIGITS = 19
 PATIENCE = 5.0
 """Seconds for git."""
 
@@ -69,10 +73,19 @@ def require_known_format(path: Path, metadata: Mapping[str, str]) -> None:
         )
 
 
+def require_times(path: Path, notes: Mapping[str, str]) -> None:
+    """Raises CncError 26003 for a start or a cycle time that is no number of ns."""
+    for name, least in TIMES.items():
+        given = notes.get(name, "1")
+        if len(given) > MOST_DIGITS or not given.isdecimal() or not least <= int(given) < 2**63:
+            reason = f"recording {path}: corrupt: its metadata have {name} = {given[:MOST_DIGITS]!r}"
+            raise CncError(CORRUPT, reason, f"nothing was read, a whole number from {least} to 2**63 - 1 is needed")
+
+
 def notes_of(path: Path, records: Iterable[Mapping[str, str]]) -> dict[str, str]:
     """What the files of a recording say of it, one after another; the first that says something counts.
 
-    Without its earlier parts it is not computable. Raises CncError 26016.
+    Without its earlier parts it is not computable. Raises CncError 26003, 26016.
     """
     notes: dict[str, str] = {}
     parts: list[str] = []
@@ -82,6 +95,7 @@ def notes_of(path: Path, records: Iterable[Mapping[str, str]]) -> dict[str, str]
         parts += [record[PART]] if PART in record else []
         missing |= dict.fromkeys([record[MISSING]] if MISSING in record else [])
         notes = {**record, **notes}
+    require_times(path, notes)
     if missing:
         notes[MISSING] = "; ".join(missing)
     lacking = next((number for number, part in enumerate(parts) if part != str(number)), None)

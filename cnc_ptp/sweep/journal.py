@@ -110,9 +110,9 @@ def row_of(line: str) -> Row | None:
     """Of a line of a journal; None for one that is damaged, which is computed again."""
     try:
         number, values, goals, error, message = json.loads(line)["variant"]
+        return Row(number, tuple(values), tuple(goals), error, message)
     except (ValueError, KeyError, TypeError):
         return None
-    return Row(number, tuple(values), tuple(goals), error, message)
 
 
 def require_same(file: str, found: Description | None, wanted: Description) -> None:

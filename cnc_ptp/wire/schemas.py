@@ -206,7 +206,14 @@ def _length(array: str | None) -> int | None:
 
 
 def _require_complete(name: str, types: dict[str, tuple[Field, ...]]) -> None:
+    if name not in types:
+        reason = f"recording: message type {full_name(name)}: its schema does not define it"
+        raise CncError(UNKNOWN_TYPE, reason, "the schema is not usable")
     for owner, fields in types.items():
+        names = [field.name for field in fields]
+        if twice := next((each for each in names if names.count(each) > 1), None):
+            reason = f"recording: message type {full_name(name)}: field {full_name(owner)}.{twice} is defined twice"
+            raise CncError(UNKNOWN_TYPE, reason, "the schema is not usable")
         for field in fields:
             if field.type not in PRIMITIVES and field.type != "string" and field.type not in types:
                 raise CncError(

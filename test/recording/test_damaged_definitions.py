@@ -1,4 +1,6 @@
-"""Recordings whose definitions of messages are damaged (found by bench.fuzz: mcap-read seed 2 number 22, mcap-replay 20)."""
+"""Recordings whose definitions of messages are damaged (found by bench.fuzz: mcap-read seed 2 number 22, mcap-replay 20;
+
+mcap-report seed 420 numbers 351 and 5506)."""
 
 import pytest
 from mcap.writer import CompressionType, Writer
@@ -37,3 +39,17 @@ def test_the_definition_of_an_event(tmp_path):
         begin = f"P-ERR-26003 recording {path}: corrupt at offset "
         assert text.startswith(begin)
         assert ": the definition of cnc_ptp/msg/Event cannot be read: UnicodeDecodeError(" in text
+
+
+@pytest.mark.parametrize(
+    ("definition", "reason"),
+    [
+        (b"uint64 cycle\nfloat64 cycle\n", "field cnc_ptp/msg/AxisState.cycle is defined twice"),
+        (b"MSG: cnc_ptp/Other\nuint64 cycle\n", "its schema does not define it"),
+    ],
+    ids=["twice", "not at all"],
+)
+def test_a_definition_that_is_none_of_its_type(definition, reason, tmp_path):
+    path = recording(tmp_path / "r.mcap", "cnc_ptp/msg/AxisState", definition)
+    text = f"P-ERR-26005 recording: message type cnc_ptp/msg/AxisState: {reason}; the schema is not usable"
+    assert [*refusals(path)] == [text, text]

@@ -143,11 +143,13 @@ def test_an_interrupted_sweep_continues_and_ends_as_one_without_a_break(tmp_path
     assert (none.computed, third.taken_over, third.results.rows) == ([], 5, whole.results.rows)
 
 
-def test_a_damaged_line_of_a_journal_is_computed_again(tmp_path):
+@pytest.mark.parametrize("damaged", ["damaged", '{"variant": [1, 5, [], 0, ""]}', '{"variant": 7}'])
+def test_a_damaged_line_of_a_journal_is_computed_again(tmp_path, damaged):
+    """Numbers in place of lists: bench.fuzz sweep-journal seed 420 number 5684."""
     sweep = sweep_in(tmp_path)
     assert not run_here(sweep, Here(after=3))
     lines = sweep.journal.read_text().splitlines()
-    sweep.journal.write_text("\n".join([*lines[:2], "damaged", lines[3]]) + "\n")
+    sweep.journal.write_text("\n".join([*lines[:2], damaged, lines[3]]) + "\n")
     pool = Here()
     assert run_here(sweep_in(tmp_path), pool)
     assert pool.computed == [1, 3, 4]
