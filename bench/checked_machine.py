@@ -15,6 +15,7 @@ from contextlib import contextmanager
 from functools import partial
 from typing import Any
 
+from cnc_ptp.axis.axis_unit import AxisUnit
 from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.wiring import build_units, unit_kinds
 from cnc_ptp.parameters import MachineParameters
@@ -77,12 +78,16 @@ class CheckedMachine:
         """All units as bytes."""
         for unit in self.units.values():
             forget_last_command(unit)
+            if isinstance(unit, AxisUnit):
+                unit._axis.setpoint(self.offline.next_cycle)
         return self._store.encode(self.offline, with_plc=True)
 
     def unit_state(self, name: str) -> bytes:
         """One unit as bytes."""
         runner = self.offline.runner(name)
         forget_last_command(runner.unit)
+        if isinstance(runner.unit, AxisUnit):
+            runner.unit._axis.setpoint(self.offline.next_cycle)  # what a look at it brings up to date is no change
         return self._store.encode_units(runner.next_cycle, {name: runner}, {})
 
     def twin(self, state: bytes) -> OfflineMachine:

@@ -217,7 +217,7 @@ class CommandedMachine(CheckedMachine):
         self.counts["commands"] += 1
         if self.kinds[unit] != "axis" or command not in THROUGH_PLC:
             self.counts["refused"] += not self.command(asked).accepted
-        elif self.random.random() < TWINS:
+        elif self.random.random() < TWINS and not self.plc._end_when_idle:  # a command would be time that is not idle
             self.give_with_twin(asked)
         else:
             self.plc.input(asked)

@@ -216,12 +216,12 @@ class ChannelUnit(Unit):
         Raises ProgramError, 22001, 22003 … 22005, 22040 … 22044.
         """
         point = start_point(line, block_number, in_program, pass_number, self._refuse)
-        self._resumed = self._sequence.phase is Phase.STOPPED
-        if self._resumed:
+        if self._sequence.phase is Phase.STOPPED:
             if point is not None:
                 at = self._sequence.source.line
                 self._refuse("start", NOT_NOW, f"the program is stopped in line {at} and can only be resumed there")
             self._sequence.resume()
+            self._resumed = True
             return
         self._require_idle("start")
         if self._program is None:
@@ -229,6 +229,7 @@ class ChannelUnit(Unit):
         begin = None if point is None else ProgramStart(point, self._program)
         position = self._motion.position
         self._begin(cycle, "start", self._program, self._initial_state(self._feedback), begin)
+        self._resumed = False
         self._sequence.end_couplings()
         if self._program.streamed:
             size = f"more than {self._parameters.checked_text} characters (P-CHAN-90005)"

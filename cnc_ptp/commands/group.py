@@ -34,6 +34,9 @@ WITHOUT_NODES = {
 
 
 NO_ROOM_TO_PRINT = 26208
+NAME_TOO_LONG = 26209
+LONGEST_SHOWN = 40
+"""Characters of a name that is too long."""
 OF_ANOTHER = "enter"
 """The command whose arguments are another command line: ROS arguments among them are for that one."""
 
@@ -74,6 +77,11 @@ class Group(click.Group):
             print_error(error if effect is None else error.meaning(effect))
             sys.exit(WRONG_INPUT)
         except OSError as error:  # of a file that the command writes it is a CncError
+            if error.errno == errno.ENAMETOOLONG:
+                name = str(error.filename)
+                reason = f"'{name[:LONGEST_SHOWN]}...' has {len(name)} characters: {error.strerror}"
+                print_error(CncError(NAME_TOO_LONG, reason, "nothing was done"))
+                sys.exit(WRONG_INPUT)
             if error.errno != errno.ENOSPC:
                 raise
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python would try again at its end

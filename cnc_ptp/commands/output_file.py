@@ -11,6 +11,12 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.recording.overwriting import overwritten, replacing
 
 
+def beside(file: str, suffix: str) -> str:
+    """The name of an output beside `file`; of a folder without a name, as `.`, in it."""
+    path = Path(file)
+    return str(path.with_suffix(suffix) if path.name not in ("", "..") else path / f"output{suffix}")
+
+
 def check_output(output: str | None, **inputs: str | None) -> None:
     """Raises CncError 27030 when `output` is one of the inputs, each by its kind: machine_file="…"."""
     if output is None:

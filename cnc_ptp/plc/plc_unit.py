@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, ClassVar
 
 from cnc_ptp.axis.external_commands import SETPOINTS
@@ -83,6 +83,8 @@ class PlcUnit(Unit):
         self._pending: dict[int, HandshakeRequest] = {}
         self._served: set[str] = set()
         """Channels and spindles whose functions an external PLC answers."""
+        self._led: dict[str, int] = {}
+        """Axes that were led when everything was stopped, and when that was."""
         self.emergency = False
         """The emergency stop is pressed."""
         self.outside: list[Outside] = []
@@ -126,7 +128,7 @@ class PlcUnit(Unit):
         block = self.reported.get(unit)
         if isinstance(block, AxisBlock | SpindleBlock) and block.state[-1] == AxisStateCode.SYNCHRONIZED_MOTION:
             return True
-        return self.is_coupled(unit) or has_external_setpoints(block)
+        return self.is_coupled(unit) or "external_disable" in ends_of_added(block)
 
     def is_lost(self, unit: str) -> bool:
         return unit in self._lost
@@ -245,8 +247,8 @@ class PlcUnit(Unit):
     def do_stop_all(self, cycle: int) -> None:
         """Controlled stop of everything: channels are reset, axes and spindles stopped on their ramps.
 
-        Left out is what stops with its channel (axes on the path) and channels in error, which stop on their own;
-        external setpoints superimposed on a path are disabled.
+        Left out is what stops with its channel (axes on the path) or its master, and channels in error, which stop on
+        their own; external setpoints and superimposed motions of what is led are ended.
         """
         self._scenario.clear()
         self.setpoints.clear()
@@ -259,8 +261,19 @@ class PlcUnit(Unit):
             if unit not in self._lost and (block is None or needs_stop(block) or self._let_go(unit, block)):
                 waits_for_gear = isinstance(block, SpindleBlock) and block.gear_request
                 self._outgoing.append(Command(unit, "reset" if waits_for_gear else STOP_COMMAND[kind], {}))
-            elif unit not in self._lost and has_external_setpoints(block):
-                self._outgoing.append(Command(unit, "external_disable", {}))
+            elif unit not in self._lost:
+                self._outgoing += [Command(unit, command, {}) for command in ends_of_added(block)]
+            if isinstance(block, AxisBlock) and not needs_stop(block):
+                self._led[unit] = cycle
+
+    def _stop_freed(self, inputs: Mapping[str, CycleBlock]) -> None:
+        """Axes that were led when everything was stopped, and were let go in that moment, by whomever."""
+        for unit, cycle in [*self._led.items()]:
+            block = inputs.get(unit)
+            if block is not None and block.first_cycle >= cycle:
+                del self._led[unit]
+                if needs_stop(block) and not at_rest(block):
+                    self._outgoing.append(Command(unit, STOP_COMMAND["axis"], {}))
 
     def _let_go(self, unit: str, block: CycleBlock) -> bool:
         """True for a slave that has not reported yet that it was decoupled: no other unit stops it."""
@@ -297,6 +310,7 @@ class PlcUnit(Unit):
         self._outgoing += self._groups.report(first_cycle, inputs)
         self._outgoing += self._trajectories.report(inputs)
         self.setpoints.watch(inputs)
+        self._stop_freed(inputs)
         self._play_scenario(first_cycle)
         self._note_requests(inputs)
         self._run_program(tick, inputs)
@@ -418,8 +432,13 @@ def needs_stop(block: CycleBlock) -> bool:
     return not (isinstance(block, AxisBlock) and block.state[-1] == AxisStateCode.SYNCHRONIZED_MOTION)
 
 
-def has_external_setpoints(block: CycleBlock | None) -> bool:
-    return isinstance(block, AxisBlock) and bool(block.status_bits[-1] & StatusBit.EXT_SETPOINT)
+def ends_of_added(block: CycleBlock | None) -> Iterator[str]:
+    """Commands that end what is superimposed on the motion of an axis. A compensation ends with what it follows."""
+    bits = block.status_bits[-1] if isinstance(block, AxisBlock) else 0
+    if bits & StatusBit.EXT_SETPOINT:
+        yield "external_disable"
+    if bits & StatusBit.COMPENSATING:
+        yield "halt_superimposed"
 
 
 def error_of(block: CycleBlock) -> int:

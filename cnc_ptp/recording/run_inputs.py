@@ -39,7 +39,7 @@ NO_MACHINE: Final = 26155
 def checkpoint_file(recording: Path) -> Path:
     """Where the checkpoints of a recording are that it does not have itself."""
     root = recording.parent if recording.name == FILE else recording
-    return root.with_name(f"{root.name}.checkpoints")
+    return root.with_name(f"{root.name}.checkpoints") if root.name else root / ".checkpoints"
 
 
 class RunInputs:

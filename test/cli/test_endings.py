@@ -153,6 +153,41 @@ def test_a_terminal_sees_block_position_and_feed():
     assert " X" in text and " Y" in text and " Z" in text and " F" in text
 
 
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["recover", "{name}", "-o", "r.mcap"],
+        ["verify", "--motion", "{name}"],
+        ["lists", "import", "m.yaml", "-o", "{name}"],
+    ],
+    ids=lambda words: words[0],
+)
+def test_a_file_name_that_is_too_long(words, tmp_path, monkeypatch):
+    """bench.fuzz command-line seed 420 numbers 383, 3690, 3836."""
+    monkeypatch.chdir(tmp_path)
+    name = "1" * 5000
+    result = call(*(word.format(name=name) for word in words))
+    assert (result.exit_code, result.output) == (
+        2,
+        f"P-ERR-26209 '{name[:40]}...' has {len(name)} characters: File name too long; nothing was done\n",
+    )
+
+
+@pytest.mark.parametrize("words", [["plot", "."], ["plot", "/"], ["replay", ".", "--from", "1"], ["replay", "."]])
+def test_a_folder_without_a_name_is_no_recording(words, tmp_path, monkeypatch):
+    """bench.fuzz command-line seed 420 numbers 740 and 4265."""
+    monkeypatch.chdir(tmp_path)
+    result = call(*words)
+    assert result.exit_code == 2 and result.output.startswith("P-ERR-26014 "), result.output
+
+
+def test_a_folder_without_a_name_is_no_program(tmp_path, monkeypatch):
+    """bench.fuzz command-line seed 420 number 6377."""
+    monkeypatch.chdir(tmp_path)
+    result = call("plot", ".", "--machine", MILL)
+    assert result.exit_code == 2 and result.output.startswith("P-ERR-26110 "), result.output
+
+
 def test_standard_output_on_a_full_disk_is_no_traceback(tmp_path):
     recording = tmp_path / "run.mcap"
     job = command("simulate", MILL, "--program", BRACKET, "--record", recording)

@@ -28,6 +28,7 @@ from cnc_ptp.client import (
     Machine,
     MC_GearIn,
     MC_MoveAbsolute,
+    MC_MoveVelocity,
     MC_Power,
     MC_Stop,
     UnknownUnit,
@@ -101,6 +102,25 @@ def test_a_coupling_without_a_master(m: Machine, inputs: dict[str, object]) -> N
         gear(True, **inputs)
     assert (gear.error, gear.busy, gear.error_id) == (True, False, 22001)
     assert gear.error_text == "axis x: MC_GearIn refused: master is not given; nothing was changed"
+
+
+def nested(levels: int) -> list[Any]:
+    value: list[Any] = []
+    for _ in range(levels):
+        value = [value]
+    return value
+
+
+def test_inputs_of_function_blocks_that_are_no_numbers(m: Machine) -> None:
+    """bench.fuzz function-block seed 420 numbers 21499, 25969 and 57237."""
+    turn, gear, move = MC_MoveVelocity(m.s), MC_GearIn(m.x), MC_MoveVelocity(m.y)
+    for _ in m.plc_cycles(0.02):
+        turn(True, velocity="fast")
+        gear(True, master=m.y, ratio_numerator=None)
+        move(True, velocity=1.0, buffer_mode=nested(5000))
+    assert turn.error_text == "spindle s: start refused: speed_rpm = 'fast' is not a number; nothing was changed"
+    assert gear.error_text == "axis x: couple refused: argument 'factor' is missing; nothing was changed"
+    assert move.error_id == 22001 and move.error
 
 
 def test_numbers_of_numpy_are_numbers(m: Machine) -> None:

@@ -61,6 +61,13 @@ def test_a_life_has_no_violation(seed: int) -> None:
     assert machine.counts["refused"] > 10
 
 
+@pytest.mark.long
+@pytest.mark.parametrize("seed", [200254, 200383, 200604, 200775, 200865, 200989])
+def test_seeds_that_have_found_something(seed: int) -> None:
+    (machine,) = lives(300, seed)
+    assert machine.violations == []
+
+
 def test_the_same_seed_makes_the_same_machine() -> None:
     first, second = (next(lives(60, 3)) for _ in range(2))
     assert [record.arguments_json for record in first.records] == [record.arguments_json for record in second.records]

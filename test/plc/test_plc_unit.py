@@ -192,6 +192,46 @@ def test_stop_all_also_stops_what_began_to_move_in_the_same_block() -> None:
     assert bench.position("x") == 0.0
 
 
+COUPLED = "- {at: 0, to: y, do: couple, master: x, factor: 0.5}\n- {at: 0.1, to: x, do: move_velocity, velocity: 40}\n"
+
+
+@pytest.mark.parametrize("by_service", [True, False], ids=["by a service", "by the PLC"])
+def test_stop_all_stops_a_slave_that_is_let_go_at_that_moment(by_service: bool) -> None:
+    """It would move on for ever: bench.random_commands seeds 200254 and 200525."""
+    scenario = "" if by_service else "- {at: 0.5, to: y, do: decouple}\n- {at: 0.5, to: plc, do: stop_all}"
+    bench = MachineBench(None, COUPLED + scenario).run(0.5)
+    assert bench.last("y").set_velocity[-1] == 20.0 and bench.last("y").master == "x"
+    if by_service:
+        bench.give("y", "decouple")
+        bench.give("plc", "stop_all")
+    bench.run(2.0)
+    assert [bench.last(axis).set_velocity[-1] for axis in ("x", "y")] == [0.0, 0.0]
+    assert bench.last("y").master == "" and bench.last("plc").run_done
+    assert_all_smooth(bench)
+
+
+def test_stop_all_leaves_alone_what_a_later_command_moves() -> None:
+    bench = MachineBench(None, COUPLED, end_when_idle=False).run(0.5)
+    bench.give("plc", "stop_all")
+    bench.run(1.0)
+    bench.give("y", "decouple")
+    bench.run(0.1)
+    bench.give("y", "move_absolute", target=-10.0)
+    bench.run(2.0)
+    assert bench.position("y") == -10.0
+
+
+def test_stop_all_ends_what_is_superimposed_on_a_slave() -> None:
+    """40 mm at 4 mm/s would take 10 s: bench.random_commands seed 200775."""
+    scenario = COUPLED + "- {at: 0.2, to: y, do: move_superimposed, distance: 40, velocity_difference: 4}\n"
+    bench = MachineBench(None, scenario + "- {at: 0.5, to: plc, do: stop_all}").run(2.0)
+    sent = [(r.target, r.command) for r in bench.records if r.cycle == 500]
+    expected = [("channel", "reset"), ("s", "stop"), ("x", "stop"), ("y", "halt_superimposed"), ("z", "stop")]
+    assert sent == [("plc", "stop_all"), *expected]
+    assert [bench.last(axis).set_velocity[-1] for axis in ("x", "y")] == [0.0, 0.0]
+    assert bench.last("plc").run_done
+
+
 def test_without_life_sign_everything_stops_after_the_watchdog_time() -> None:
     bench = moving_everything(0.5, "- {at: 0.5, to: plc, do: set_life_sign, enabled: off}")
     bench.run(1.5)

@@ -7,7 +7,7 @@ from math import inf
 from pathlib import Path
 
 from cnc_ptp.commands.look.report import program_of
-from cnc_ptp.commands.output_file import write_output
+from cnc_ptp.commands.output_file import beside, write_output
 from cnc_ptp.commands.picture_file import check_picture, picture_bytes, picture_kind
 from cnc_ptp.errors import CncError
 from cnc_ptp.plots.recording_picture import Heading, draw_rows
@@ -30,7 +30,7 @@ def plot(
     output: str | None,
 ) -> int:
     """Draws the fields `topics`, or the usual ones; without `output` RECORDING.svg next to the recording."""
-    output = output or str(Path(recording).with_suffix(".svg"))
+    output = output or beside(recording, ".svg")
     check_picture(output, recording=recording)
     whole = read_for_report(recording, begin, end, most_states=inf)  # every cycle: any field may be asked for
     program = program_of(whole)

@@ -10,7 +10,7 @@ import numpy as np
 from cnc_ptp.channel.channel_unit import BAD_OVERRIDE
 from cnc_ptp.commands.commissioning.trial_run import Columns, Trial, run_trial
 from cnc_ptp.commands.console import RUN_FAILED, print_missing_folders
-from cnc_ptp.commands.output_file import check_page, write_output
+from cnc_ptp.commands.output_file import beside, check_page, write_output
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.run_entries import read_entries
 from cnc_ptp.parameters import MachineParameters, machine_text, read_machine
@@ -52,7 +52,7 @@ def plot_program(
     Raises the errors of the machine file and of the program, CncError 22006 for an `override` (%) above that of the
     machine, 27030 for an output that cannot be written, 26011 for a program that does not move along a path.
     """
-    output = output or str(Path(program).with_suffix(".html"))
+    output = output or beside(program, ".html")
     check_page(output, machine_file=machine, NC_program=program)
     parameters = read_machine(machine)
     print_missing_folders(parameters)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import Any
 
 from cnc_ptp.protocol.commands import NEEDS_SOMETHING, Argument, Arguments
@@ -28,7 +29,7 @@ def given_arguments(known: Arguments, request: Any) -> dict[str, Any]:
 
 def plain(argument: Argument, value: Any) -> Any:
     """Arrays of a message as the lists of a command; a TrajectoryPoint as its row."""
-    return [row_of(each) for each in value] if argument.kind == "rows" else value
+    return [row_of(each) for each in value] if argument.kind == "rows" and isinstance(value, Iterable) else value
 
 
 def row_of(value: Any) -> Any:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import nan
+from numbers import Real
 from typing import Any
 
 from cnc_ptp.plc.plcopen.execute_block import EndlessBlock, ExecuteBlock
@@ -91,7 +92,7 @@ class MC_GearIn(SlaveBlock):
     ) -> None:
         if not self._rises(execute):
             return
-        self._ratio = ratio_numerator / ratio_denominator if ratio_denominator else nan
+        self._ratio = ratio_of(ratio_numerator, ratio_denominator)
         if self.unit.kind == "spindle":
             self._couple("couple", master, factor_num=ratio_numerator, factor_den=ratio_denominator)
         elif not ratio_denominator:
@@ -116,6 +117,14 @@ class MC_GearIn(SlaveBlock):
         elif self._coupling_job:
             self._job, self._coupling_job = self._coupling_job, 0
             self._follow_job()
+
+
+def ratio_of(numerator: Any, denominator: Any) -> Any:
+    """What is no number is the ratio itself, so that the command refuses it; without a denominator it is NaN."""
+    wrong = next((each for each in (numerator, denominator) if not isinstance(each, Real)), None)
+    if not (isinstance(numerator, Real) and isinstance(denominator, Real)):
+        return wrong
+    return numerator / denominator if denominator else nan
 
 
 class MC_CamIn(SlaveBlock):

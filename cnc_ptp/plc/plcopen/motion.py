@@ -5,6 +5,7 @@ Positions in mm (°), velocities in mm/s (°/s), of spindles in rpm. Dynamics th
 
 from __future__ import annotations
 
+from numbers import Real
 from typing import Any, ClassVar
 
 from cnc_ptp.axis.faults import IN_BRAKE_PHASE
@@ -132,8 +133,9 @@ class MC_MoveVelocity(EndlessBlock):
             reason = "a spindle has the ramps of its gear, no acceleration, deceleration or jerk is possible"
             self._fail(NO_RAMPS, f"{self._where}: MC_MoveVelocity refused: {reason}; nothing was changed")
         elif self.unit.kind == "spindle":
-            turn = {"direction": "ccw" if velocity < 0.0 else "cw", "speed_rpm": abs(velocity)}
-            self._start("start", buffer_mode, **turn)
+            turns = isinstance(velocity, Real)  # the command refuses what is no number
+            direction = "ccw" if turns and velocity < 0.0 else "cw"
+            self._start("start", buffer_mode, direction=direction, speed_rpm=abs(velocity) if turns else velocity)
         else:
             self._start("move_velocity", buffer_mode, velocity=velocity, **ramps)
 

@@ -283,7 +283,14 @@ class AxisCheck:
             rows = slice(self.stretches.row(order.cycle), None)
             low[rows], high[rows] = parameters.soft_limit_negative, parameters.soft_limit_positive
         shift = self._shift()
-        free = ~self.referenced | self.error | since(self.led | self.external, self.resting) | self._unknown_shift()
+        homes = and_next(self.state == S.HOMING)  # it brakes behind its marker, wherever that is
+        free = (
+            ~self.referenced
+            | self.error
+            | homes
+            | since(self.led | self.external, self.resting)
+            | self._unknown_shift()
+        )
         blur = PLACES * np.spacing(np.abs(points.position) + np.abs(shift))
         blur += np.where(shift != 0.0, own.jerk * points.cycle_time**3, 0.0)
         dx = np.concatenate(([0.0], np.where(self.laws.placed, 0.0, np.diff(points.position))))

@@ -10,7 +10,7 @@ from cnc_ptp.parameters import GearParameters
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.spindle_states import SpindleBit as B
-from cnc_ptp.recording.motion_check.axis_check import setpoints_of
+from cnc_ptp.recording.motion_check.axis_check import is_power, setpoints_of
 from cnc_ptp.recording.motion_check.continuity import check_continuity
 from cnc_ptp.recording.motion_check.findings import Findings, Mask, MotionResult
 from cnc_ptp.recording.motion_check.inputs import MotionInputs, Order
@@ -77,6 +77,11 @@ class SpindleCheck:
         changes |= np.diff(self.bits & SWITCHES) != 0
         changes |= (self.state[:-1] == S.DISABLED) & (self.state[1:] != S.DISABLED)
         changes |= (self.state[1:] == S.HOMING) | (self.state[:-1] == S.HOMING)
+        still = self.points.velocity == 0.0
+        for order in filter(is_power, self.inputs.orders_of(self.name)):  # off and on again within a block
+            row = int(np.searchsorted(self.cycles, order.cycle))
+            if 0 < row < len(still):
+                changes[row - 1] |= still[row - 1] & still[row]
         return changes
 
     # owner
