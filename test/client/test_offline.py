@@ -104,8 +104,8 @@ def test_a_coupling_without_a_master(m: Machine, inputs: dict[str, object]) -> N
     assert gear.error_text == "axis x: MC_GearIn refused: master is not given; nothing was changed"
 
 
-def nested(levels: int) -> list[Any]:
-    value: list[Any] = []
+def nested(levels: int) -> list[object]:
+    value: list[object] = []
     for _ in range(levels):
         value = [value]
     return value
