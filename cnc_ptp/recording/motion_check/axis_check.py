@@ -244,7 +244,7 @@ class AxisCheck:
         self.found.above("moves although it was stopped", self.points.velocity, zero, moves, f"{self.points.length}/s")
 
     def _check_obedience(self) -> None:
-        """An axis that is told to stop comes to rest, unless another command, a path or a master moves it meanwhile."""
+        """An axis that gets a stop comes to rest, unless another command, a path or a master moves it meanwhile."""
         points, late = self.points, np.zeros(len(self.cycles), dtype=bool)
         others = self.led | self.on_path | self.external | self.added
         starts = [order.cycle for order in self.orders if order.command in STARTS]
