@@ -1,7 +1,7 @@
 # make demo   a part is machined by the ROS graph: runs/demo.mcap and runs/demo.html; LOOK=1: pages of it in a browser
 # make test   the tests; LONG=1: with those that take long;  make lint: ruff and mypy;  make setup: the set-up alone
 # make bench   figures; it never fails on time
-# make campaign   kills, load, random commands, mutated inputs: 8 minutes; HOURS=8 longer, SEED=7 other ones
+# make campaign   kills, load, random commands, mutated inputs: 9 minutes; HOURS=8 longer, SEED=7 other ones
 # make figures   every scenario of examples/figures runs and becomes a picture in docs/figures
 # make docs   reference pages and gallery are made again, then the site: build/site/index.html
 # make ids   cnc_ptp/parameters/declare/ids.py is made from declarations.yaml

@@ -1,6 +1,6 @@
 """`python -m campaign`: kills, load, random commands and mutated inputs, and what became of the machine.
 
-The parts share the time: half of it for kills, a quarter each for commands and inputs; load takes about two minutes.
+The parts share the time: half of it for kills, a quarter each for commands and inputs; load takes about three minutes.
 """
 
 from __future__ import annotations

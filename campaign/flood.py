@@ -46,13 +46,25 @@ LEFT_OUT = ("emergency_stop", "stop_all")
 
 
 def topics(machine: MachineParameters) -> Iterator[tuple[str, Any]]:
-    """All that the PLC and clients write."""
-    yield LIFE_SIGN, msg.LifeSign
-    yield EMERGENCY_STOP_TOPIC, Bool
-    yield TRAJECTORY_TOPIC, JointTrajectory
+    """All that the PLC and clients write. The life sign is the last: that it does not change stops everything."""
     for unit, kind in unit_kinds(machine).items():
         for name, message_type in PLC_TOPICS.get(kind, {}).items():
             yield plc_topic(unit, name), message_type
+    yield EMERGENCY_STOP_TOPIC, Bool
+    yield TRAJECTORY_TOPIC, JointTrajectory
+    yield LIFE_SIGN, msg.LifeSign
+
+
+def harmless(name: str, message_type: Any) -> Any:
+    """A message that leaves the machine as it is."""
+    message = message_type()
+    if isinstance(message, msg.Override):
+        message.percent = 100.0
+    elif isinstance(message, msg.FeedRelease):
+        message.forward = message.backward = True
+    elif isinstance(message, msg.Switch):
+        message.enabled = name.endswith("/enable")
+    return message
 
 
 def services(machine: MachineParameters) -> Iterator[tuple[str, Any]]:
@@ -75,12 +87,13 @@ class Flood:
         self.messages = self.calls = self.unanswered = 0
 
     def topic(self, name: str, message_type: Any) -> None:
-        """Messages without contents at RATE."""
+        """Messages at RATE."""
+        message = harmless(name, message_type)
         publisher = self._node.create_publisher(message_type, name, plc_quality(message_type))
         begin, sent = time.monotonic(), 0
         while (passed := time.monotonic() - begin) < self._seconds:
             while sent < passed * RATE:
-                publisher.publish(message_type())
+                publisher.publish(message)
                 sent += 1
             time.sleep(0.001)
         self.messages += sent

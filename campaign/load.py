@@ -36,6 +36,8 @@ WATCHDOG = 26101
 ROUND = 3.0
 """Seconds that a round of the program takes at least."""
 SUBSCRIBERS, FOREIGN_NODES = 200, 50
+MOVING_TOPICS = 20
+"""Floods of topics in which the program runs on, at least."""
 FLOOD = 0.2
 """Seconds for each topic and each service."""
 SETTLED, SETTLING = 0.2, 300.0
@@ -257,7 +259,11 @@ def floods(folder: Path, domain: int) -> LoadRow:
         row.figures |= {name: float(count) for name, count in counts.items()}
         if done.returncode or counts["unanswered"]:
             row.problems.append(f"calls without an answer: {counts} {done.stderr[-300:]}")
-        finished(row, graph, "program", errors_count=False)
+        recorded = finished(row, graph, "program", errors_count=False)
+    moved = int(np.count_nonzero(recorded.states["/x/state"]["set_velocity"]))
+    row.figures["cycles in motion"] = moved
+    if moved < 1000.0 * FLOOD * MOVING_TOPICS:
+        row.problems.append(f"x has moved in {moved} cycles only: it was no flood of a running machine")
     return row
 
 

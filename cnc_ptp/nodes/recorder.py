@@ -63,7 +63,7 @@ from cnc_ptp.state.encoding import digest_of
 from cnc_ptp.wire.block_codec import codec_of, head_of, with_plain_header
 from cnc_ptp.wire.stamps import Stamps
 from cnc_ptp.wire.ticks import Tick, decode_tick
-from cnc_ptp.wire.unreadable import UNREADABLE_MESSAGE
+from cnc_ptp.wire.unreadable import UNREADABLE_MESSAGE, unreadable
 
 Sink = Recording | OnDemand
 
@@ -150,8 +150,8 @@ class RecorderNode(PollingNode):
             received = self._guarded(partial(self._on_stamped, topic, message_type))
             self.create_subscription(message_type, topic, received, PLC_INPUT, raw=True)
         self.create_subscription(msg.DriveStop, DRIVE_STOPS, self._guarded(self._on_drive_stop), EVENTS, raw=True)
-        received = self._guarded(self._on_checkpoint)
-        self.create_subscription(msg.UnitCheckpoint, CHECKPOINTS, received, STATES_OF_UNITS)
+        received = self.readable(CHECKPOINTS, self._guarded(self._on_checkpoint))
+        self.create_subscription(msg.UnitCheckpoint, CHECKPOINTS, received, STATES_OF_UNITS, raw=True)
         for topic, message_type, quality in observed_topics(machine):
             received = self._guarded(partial(self._on_observed, recorded_topic(topic), type_name(message_type)))
             self.create_subscription(message_type, topic, received, quality, raw=True)
@@ -304,8 +304,16 @@ class RecorderNode(PollingNode):
         self._stopped[message.unit] = message.first_cycle
         self._on_stamped(DRIVE_STOPS, msg.DriveStop, data)
 
-    def _on_checkpoint(self, message: msg.UnitCheckpoint) -> None:
-        self._texts |= {digest_of(text): text for text in json.loads(message.texts_json)}
+    def _on_checkpoint(self, data: bytes) -> None:
+        """Raises CncError 26184 for one that no unit of the machine has sent."""
+        message = deserialize_message(data, msg.UnitCheckpoint)
+        try:
+            texts = json.loads(message.texts_json)
+        except ValueError:
+            texts = None
+        if message.unit not in self._units or not isinstance(texts, list) or {*map(type, texts)} - {str}:
+            raise unreadable("cnc_ptp/msg/UnitCheckpoint", data, "it is of no unit, or has no list of texts")
+        self._texts |= {digest_of(text): text for text in texts}
         if self._recording is not None:
             self._recording.unit_state(message.next_cycle, message.unit, message.state.tobytes(), self._texts)
 

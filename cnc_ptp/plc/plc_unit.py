@@ -84,7 +84,7 @@ class PlcUnit(Unit):
         self._served: set[str] = set()
         """Channels and spindles whose functions an external PLC answers."""
         self._led: dict[str, int] = {}
-        """Axes that were led when everything was stopped, and when that was."""
+        """Axes that were led when everything was stopped, and when that was, until they rest."""
         self.emergency = False
         """The emergency stop is pressed."""
         self.outside: list[Outside] = []
@@ -128,7 +128,7 @@ class PlcUnit(Unit):
         block = self.reported.get(unit)
         if isinstance(block, AxisBlock | SpindleBlock) and block.state[-1] == AxisStateCode.SYNCHRONIZED_MOTION:
             return True
-        return self.is_coupled(unit) or "external_disable" in ends_of_added(block)
+        return self.is_coupled(unit) or has_external_setpoints(block)
 
     def is_lost(self, unit: str) -> bool:
         return unit in self._lost
@@ -267,13 +267,16 @@ class PlcUnit(Unit):
                 self._led[unit] = cycle
 
     def _stop_freed(self, inputs: Mapping[str, CycleBlock]) -> None:
-        """Axes that were led when everything was stopped, and were let go in that moment, by whomever."""
+        """Axes that were led when everything was stopped, and were let go before they came to rest, by whomever."""
         for unit, cycle in [*self._led.items()]:
             block = inputs.get(unit)
-            if block is not None and block.first_cycle >= cycle:
+            if not isinstance(block, AxisBlock) or block.first_cycle < cycle:
+                continue
+            freed = needs_stop(block) and not at_rest(block)
+            if freed:
+                self._outgoing.append(Command(unit, STOP_COMMAND["axis"], {}))
+            if freed or block.set_velocity[-1] == 0.0:
                 del self._led[unit]
-                if needs_stop(block) and not at_rest(block):
-                    self._outgoing.append(Command(unit, STOP_COMMAND["axis"], {}))
 
     def _let_go(self, unit: str, block: CycleBlock) -> bool:
         """True for a slave that has not reported yet that it was decoupled: no other unit stops it."""
@@ -432,12 +435,15 @@ def needs_stop(block: CycleBlock) -> bool:
     return not (isinstance(block, AxisBlock) and block.state[-1] == AxisStateCode.SYNCHRONIZED_MOTION)
 
 
+def has_external_setpoints(block: CycleBlock | None) -> bool:
+    return isinstance(block, AxisBlock) and bool(block.status_bits[-1] & StatusBit.EXT_SETPOINT)
+
+
 def ends_of_added(block: CycleBlock | None) -> Iterator[str]:
     """Commands that end what is superimposed on the motion of an axis. A compensation ends with what it follows."""
-    bits = block.status_bits[-1] if isinstance(block, AxisBlock) else 0
-    if bits & StatusBit.EXT_SETPOINT:
+    if has_external_setpoints(block):
         yield "external_disable"
-    if bits & StatusBit.COMPENSATING:
+    if isinstance(block, AxisBlock) and block.status_bits[-1] & StatusBit.COMPENSATING:
         yield "halt_superimposed"
 
 

@@ -104,9 +104,8 @@ class RunInputs:
             for part in [*self._beside, *self._parts]:
                 if name in part.index.attachments:
                     yield partial(part.attached, [name])
-            for part in self._parts:
-                if of_units := [each for each in part.index.attachments if each.startswith(f"{name}/")]:
-                    yield partial(part.attached, of_units)
+            if of_units := [each for each in self._attachments if each.startswith(f"{name}/")]:
+                yield partial(self._read, of_units)
 
     def checkpoint_texts(self) -> dict[str, str]:
         """Long texts of the states by their digests."""
@@ -146,6 +145,10 @@ class RunInputs:
             return f"{file} has the checkpoints of another run"
         self._attachments = dict.fromkeys(part.index.attachments, part) | self._attachments
         return ""
+
+    def _read(self, names: Iterable[str]) -> list[bytes]:
+        """Raises CncError 26003."""
+        return [self._attached(name) for name in names]
 
     def _attached(self, name: str) -> bytes:
         """Empty if there is none of this name."""

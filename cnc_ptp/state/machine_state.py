@@ -81,6 +81,12 @@ class StateStore:
         rest = zstandard.compress(text.encode(), LEVEL)
         return MAGIC + LAYOUT.to_bytes(2, "little") + kernel_digest() + check_sum(rest) + rest
 
+    def forget_texts(self, most_lists: int) -> None:
+        """Texts, which somebody else has; and lists when there are more: those of programs that are gone."""
+        self.texts.clear()
+        if len(self._lists) > most_lists:
+            self._lists.clear()
+
     def restore(self, state: bytes) -> MachineState:
         """New units in a state. Raises CncError 26151 for damaged bytes, 26152 for those of another kernel."""
         content = parsed(read(state))

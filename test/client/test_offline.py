@@ -119,7 +119,10 @@ def test_inputs_of_function_blocks_that_are_no_numbers(m: Machine) -> None:
         gear(True, master=m.y, ratio_numerator=None)
         move(True, velocity=1.0, buffer_mode=nested(5000))
     assert turn.error_text == "spindle s: start refused: speed_rpm = 'fast' is not a number; nothing was changed"
-    assert gear.error_text == "axis x: couple refused: argument 'factor' is missing; nothing was changed"
+    assert (
+        gear.error_text
+        == "axis x: MC_GearIn refused: ratio_numerator = None is not a finite number; nothing was changed"
+    )
     assert move.error_id == 22001 and move.error
 
 

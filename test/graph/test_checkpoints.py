@@ -125,7 +125,7 @@ def test_a_checkpoint_without_a_unit_is_passed_over(tmp_path: Path) -> None:
     run("run", MILL, "--program", program(tmp_path), "--record", path, "--checkpoints", 1, "--free-run")
     machine = read_machine(MILL)
     with RunInputs(path) as recorded:
-        del recorded._parts[0].index.attachments["checkpoint/3000/x"]
+        del recorded._attachments["checkpoint/3000/x"]
         state, why = state_before(recorded, machine, 3200)
         assert state is not None and state.next_cycle == 2000
         assert why == "P-ERR-26151 checkpoint: the state is damaged: it lacks x; nothing was restored"
@@ -149,7 +149,23 @@ def test_a_state_that_cannot_be_stored_is_told_once(tmp_path: Path, monkeypatch:
     assert run_machine(*files, free_run=True, composed=True, checkpoints=1.0) == 0
     told = [event.text for event in read_recording(path).events if event.error_id == 26150 and event.source == "x"]
     assert told == [
-        "x: the state holds something at its place; no state was stored, a replay from now on begins at an older "
-        "checkpoint or at 0 s"
+        "x: the state holds something at its place; no state was stored, a replay begins at an older checkpoint, or "
+        "cnc_ptp replay --checkpoints makes them"
     ]
     assert checkpoints_of(path) == []
+
+
+def test_a_large_program_has_no_states_in_real_time(tmp_path: Path) -> None:
+    """Its blocks would take seconds to store, and everything would stop."""
+    lines = "".join(f"G01 X{n % 2} F3000\n" for n in range(1200))
+    (tmp_path / "large.nc").write_text(f"%L\n{lines}M30\n")
+    path = tmp_path / "graph.mcap"
+    words = ("--record", path, "--checkpoints", 0.5, "--duration", 2)
+    run("run", MILL, "--program", tmp_path / "large.nc", *words)
+    told = [event.text for event in read_recording(path).events if event.error_id == 26150]
+    assert told == [
+        "channel: the state holds a program of 1201 blocks, which would hold up a machine in real time at channel; no "
+        "state was stored, a replay begins at an older checkpoint, or cnc_ptp replay --checkpoints makes them"
+    ]
+    result = call("replay", path, "--from", 1.2)
+    assert "computed from 0 s: P-ERR-26151 checkpoint: the state is damaged: it lacks channel" in result.output

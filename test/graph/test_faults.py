@@ -17,10 +17,21 @@ from cnc_ptp.nodes import process
 from cnc_ptp.nodes.clock import ClockNode
 from cnc_ptp.nodes.monitor import RunMonitor
 from cnc_ptp.nodes.recorder import RecorderNode
-from cnc_ptp.nodes.topics import BLOCKS, DRIVE_STOPS, EVENT, EVENTS, REPORT, TICK, block_topic
+from cnc_ptp.nodes.topics import (
+    BLOCKS,
+    CHECKPOINTS,
+    DRIVE_STOPS,
+    EVENT,
+    EVENTS,
+    REPORT,
+    STATES_OF_UNITS,
+    TICK,
+    block_topic,
+)
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import PlcBlock, Severity
 from cnc_ptp.recording.reader import read_recording
+from cnc_ptp.recording.run_inputs import RunInputs
 from cnc_ptp.recording.writing_place import require_writable
 from cnc_ptp.wire.block_codec import encode_block
 from cnc_ptp.wire.stamps import Stamps
@@ -158,6 +169,24 @@ def test_blocks_behind_the_stop_of_a_drive_are_not_recorded(around, tmp_path):
     spin_until(lambda: recorder._next_cycle["x"] == 20)
     recorder.destroy_node()
     assert read_recording(path).states["/x/state"]["cycle"].tolist() == list(range(10))
+
+
+def test_states_that_no_unit_has_sent_are_left_out(around, tmp_path):
+    """A foreign message must not end the recorder: without it everything stops."""
+    path = tmp_path / "a.mcap"
+    outside, recorder, spin_until = around(lambda: RecorderNode(read_machine(str(PTP)), str(path), PTP.read_text()))
+    states = outside.create_publisher(msg.UnitCheckpoint, CHECKPOINTS, STATES_OF_UNITS)
+    spin_until(lambda: outside.ticks.get_subscription_count() and states.get_subscription_count())
+    outside.ticks.publish(msg.CycleTick(first_cycle=0, count=10))
+    spin_until(lambda: recorder._last_tick == 0)
+    for unit, texts in (("", ""), ("x", "[1]"), ("x", "{}"), ("q", "[]"), ("x", '["a program"]')):
+        states.publish(msg.UnitCheckpoint(unit=unit, next_cycle=10, texts_json=texts, state=b"abc"))
+    spin_until(lambda: recorder._texts)
+    assert recorder.failure is None and [*recorder._texts.values()] == ["a program"]
+    recorder.destroy_node()
+    with RunInputs(path) as recorded:
+        assert [name for name in recorded._attachments if name.startswith("checkpoint/")] == ["checkpoint/10/x"]
+        assert [*recorded.checkpoint_texts().values()] == ["a program"]
 
 
 def test_a_fault_in_the_last_block_fails_the_run(around):

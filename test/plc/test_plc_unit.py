@@ -210,6 +210,18 @@ def test_stop_all_stops_a_slave_that_is_let_go_at_that_moment(by_service: bool) 
     assert_all_smooth(bench)
 
 
+@pytest.mark.parametrize("later", [0.01, 0.02, 0.05])
+def test_stop_all_stops_a_slave_that_is_let_go_while_it_brakes(later: float) -> None:
+    bench = MachineBench(None, COUPLED).run(0.5)
+    bench.give("plc", "stop_all")
+    bench.run(later)
+    bench.give("y", "decouple")
+    bench.run(2.0)
+    assert [bench.last(axis).set_velocity[-1] for axis in ("x", "y")] == [0.0, 0.0]
+    assert bench.last("y").master == "" and bench.last("plc").run_done
+    assert_all_smooth(bench)
+
+
 def test_stop_all_leaves_alone_what_a_later_command_moves() -> None:
     bench = MachineBench(None, COUPLED, end_when_idle=False).run(0.5)
     bench.give("plc", "stop_all")

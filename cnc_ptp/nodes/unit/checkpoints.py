@@ -15,10 +15,16 @@ from cnc_ptp.machine.runner import UnitRunner
 from cnc_ptp.nodes import convert
 from cnc_ptp.nodes.topics import CHECKPOINTS, STATES_OF_UNITS
 from cnc_ptp.parameters import MachineParameters
-from cnc_ptp.protocol.blocks import CycleBlock
+from cnc_ptp.protocol.blocks import ChannelBlock, CycleBlock
 from cnc_ptp.protocol.unit import PLC
+from cnc_ptp.state.faults import not_storable
 from cnc_ptp.state.machine_state import StateStore, kernel_digest
 from cnc_ptp.wire.stamps import Stamps
+
+MOST_BLOCKS = 1000
+"""Of a program in real time: its blocks are most of a state, and storing so many takes some 30 ms."""
+MOST_LISTS = 8
+"""Long lists whose digests are remembered; those of programs that are gone are forgotten with all others."""
 
 
 class UnitCheckpoints:
@@ -33,18 +39,25 @@ class UnitCheckpoints:
         self._told: set[str] = set()
         self._publisher = node.create_publisher(msg.UnitCheckpoint, CHECKPOINTS, STATES_OF_UNITS)
 
-    def watch(self, runner: UnitRunner, block: CycleBlock, stamps: Stamps) -> None:
-        """The unit has computed and published a block. Raises CncError 26150 where its state cannot be stored."""
+    def watch(self, runner: UnitRunner, block: CycleBlock, stamps: Stamps, *, paced: bool) -> None:
+        """The unit has computed and published a block, `paced`: in real time.
+
+        Raises CncError 26150 where its state cannot be stored, or not in time.
+        """
         if runner.next_cycle < self._next:
             return
         self._next = runner.next_cycle + self._cycles
         if not self._publisher.get_subscription_count():
             return
         name = runner.unit.name
+        if paced and isinstance(block, ChannelBlock) and block.blocks_total > MOST_BLOCKS:
+            reason = f"a program of {block.blocks_total} blocks, which would hold up a machine in real time"
+            raise not_storable(name, reason)
         units = {} if name == PLC else {name: runner}  # a recording has the commands of the PLC
         state = self._store.encode_units(runner.next_cycle, units, {name: block})
         texts = [text for digest, text in self._store.texts.items() if digest not in self._told]
         self._told |= self._store.texts.keys()
+        self._store.forget_texts(MOST_LISTS)
         message = msg.UnitCheckpoint(next_cycle=runner.next_cycle, unit=name, state=state, texts_json=json.dumps(texts))
         message.header.stamp = convert.time_message(stamps.at(runner.next_cycle))
         self._publisher.publish(message)

@@ -76,7 +76,9 @@ LOOK_PERIOD = 0.005
 LONGEST_COMMAND = 2.0
 """Seconds that a command or block may take; after that the node counts as silent."""
 DIAGNOSTICS_PERIOD = 1.0
-WITHOUT_STATES = "no state was stored, a replay from now on begins at an older checkpoint or at 0 s"
+WITHOUT_STATES = (
+    "no state was stored, a replay begins at an older checkpoint, or cnc_ptp replay --checkpoints makes them"
+)
 
 
 class UnitNode(PollingNode):
@@ -127,6 +129,7 @@ class UnitNode(PollingNode):
         self._state_period = period_cycles(machine, state_rate)
         self._checkpoint_seconds = checkpoints
         self._checkpoints: UnitCheckpoints | None = None
+        self._has_told_state = False
         self._scheduled_ns: dict[int, int] = {}
         self._told_twice: set[str] = set()
         self._masters: set[str] = set()
@@ -462,13 +465,14 @@ class UnitNode(PollingNode):
             self.run_ended()
 
     def _publish_checkpoint(self, checkpoints: UnitCheckpoints, block: CycleBlock) -> None:
-        """One that cannot be stored is the last one: those after it could not be, either."""
+        """The first one that cannot be stored is told; later ones may be those of another program."""
         try:
             with self._working():
-                checkpoints.watch(self._runner, block, self._stamps)
+                checkpoints.watch(self._runner, block, self._stamps, paced=self.paced)
         except CncError as error:
-            self._checkpoints = None
-            self.tell(Severity.INFO, error.number, f"{self.unit.name}: {error.reason}; {WITHOUT_STATES}")
+            if not self._has_told_state:
+                self._has_told_state = True
+                self.tell(Severity.INFO, error.number, f"{self.unit.name}: {error.reason}; {WITHOUT_STATES}")
 
     def run_ended(self) -> None:
         """For subclasses: the last block has been computed."""

@@ -12,7 +12,7 @@ from cnc_ptp.plc.plcopen.faults import CAME_TO_REST, NOT_GRANTED
 from cnc_ptp.plc.plcopen.unit_reference import UnitReference
 from cnc_ptp.protocol.axis_states import AxisStateCode
 from cnc_ptp.protocol.blocks import AxisBlock, SpindleBlock
-from cnc_ptp.protocol.commands import BAD_ARGUMENT
+from cnc_ptp.protocol.commands import BAD_ARGUMENT, is_finite
 
 Master = UnitReference | str
 SPEED_BAND = 1e-3
@@ -92,7 +92,13 @@ class MC_GearIn(SlaveBlock):
     ) -> None:
         if not self._rises(execute):
             return
-        self._ratio = ratio_of(ratio_numerator, ratio_denominator)
+        terms = {"ratio_numerator": ratio_numerator, "ratio_denominator": ratio_denominator}
+        wrong = next((name for name, value in terms.items() if not (isinstance(value, Real) and is_finite(value))), "")
+        if wrong:
+            reason = f"{wrong} = {terms[wrong]!r:.60} is not a finite number"
+            self._fail(BAD_ARGUMENT, f"{self._where}: MC_GearIn refused: {reason}; nothing was changed")
+            return
+        self._ratio = ratio_numerator / ratio_denominator if ratio_denominator else nan
         if self.unit.kind == "spindle":
             self._couple("couple", master, factor_num=ratio_numerator, factor_den=ratio_denominator)
         elif not ratio_denominator:
@@ -117,14 +123,6 @@ class MC_GearIn(SlaveBlock):
         elif self._coupling_job:
             self._job, self._coupling_job = self._coupling_job, 0
             self._follow_job()
-
-
-def ratio_of(numerator: Any, denominator: Any) -> Any:
-    """What is no number is the ratio itself, so that the command refuses it; without a denominator it is NaN."""
-    wrong = next((each for each in (numerator, denominator) if not isinstance(each, Real)), None)
-    if not (isinstance(numerator, Real) and isinstance(denominator, Real)):
-        return wrong
-    return numerator / denominator if denominator else nan
 
 
 class MC_CamIn(SlaveBlock):

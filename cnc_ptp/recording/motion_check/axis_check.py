@@ -264,12 +264,13 @@ class AxisCheck:
 
         A motion may be stopped with the dynamics of the command that began it.
         """
-        own, points = self.parameters, self.points
+        points, own = self.points, [self.parameters, *(parameters for _, parameters in self._written())]
         rests = np.flatnonzero(self.resting[:row])
-        began = self.cycles[rests[-1]] if len(rests) else self.cycles[0]
+        began = self.cycles[rests[-1]] if len(rests) else 0
         given = [each for each in self.orders if began <= each.cycle <= order.cycle]
-        braking = min(own.deceleration, *(each.number("deceleration") or inf for each in given))
-        jerk = min(own.jerk, *(each.number("jerk") or inf for each in given))
+        braking = min(each.deceleration for each in own)
+        braking = min([braking, *(each.number("deceleration") or inf for each in given)])
+        jerk = min([*(each.jerk for each in own), *(each.number("jerk") or inf for each in given)])
         acceleration, velocity = abs(points.acceleration[row]), abs(points.velocity[row])
         turned = (acceleration + braking) / jerk
         seconds = turned + (velocity + acceleration * turned) / braking + braking / jerk
