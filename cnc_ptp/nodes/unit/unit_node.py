@@ -465,7 +465,7 @@ class UnitNode(PollingNode):
             self.run_ended()
 
     def _publish_checkpoint(self, checkpoints: UnitCheckpoints, block: CycleBlock) -> None:
-        """The first one that cannot be stored is told; later ones may be those of another program."""
+        """An event for the first one that cannot be stored; later ones may be those of another program."""
         try:
             with self._working():
                 checkpoints.watch(self._runner, block, self._stamps, paced=self.paced)
