@@ -302,7 +302,8 @@ def command_lines(
     """Name and command line (executable first) of every node of a run; the clock waits for `observers` as well."""
     free_run = ["--free-run"] if options.free_run else []
     units = ["--recorders", "1"] if options.recording else []
-    units += ["--checkpoints", str(options.checkpoints)] if options.recording else []
+    if options.recording and options.checkpoints != CHECKPOINT_SECONDS:
+        units += ["--checkpoints", str(options.checkpoints)]
     units = [*units, "--state-rate", str(options.state_rate)] if options.state_rate is not None else units
     program = ["--program", options.program] if options.program else []
     program += ["--dialect", options.dialect] if options.program and options.dialect else []
