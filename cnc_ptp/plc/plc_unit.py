@@ -263,7 +263,6 @@ class PlcUnit(Unit):
                 self._outgoing.append(Command(unit, "reset" if waits_for_gear else STOP_COMMAND[kind], {}))
             elif unit not in self._lost:
                 self._outgoing += [Command(unit, command, {}) for command in ends_of_added(block)]
-            if isinstance(block, AxisBlock) and not needs_stop(block):
                 self._led[unit] = cycle
 
     def _stop_freed(self, inputs: Mapping[str, CycleBlock]) -> None:

@@ -24,7 +24,7 @@ from cnc_ptp.recording.overwriting import replacing
 from cnc_ptp.recording.run_difference import CYCLE, fields_of
 from cnc_ptp.recording.run_inputs import CHECKPOINTS_OF, RunInputs, checkpoint_file
 from cnc_ptp.recording.selection import NOT_RECORDED
-from cnc_ptp.recording.writer import CHECKPOINT, CHECKPOINT_TEXT
+from cnc_ptp.recording.writer import CHECKPOINT, write_new_texts
 
 OTHER_RESULT = 26210
 NO_CHECKPOINT = 26223
@@ -75,10 +75,7 @@ class CheckpointFile:
         self._file.metadata(CHECKPOINTS_OF, {"run": recorded.run_id()})
 
     def checkpoint_texts(self, texts: Mapping[str, str]) -> None:
-        for digest in texts.keys() - self._texts:
-            self._texts.add(digest)
-            content = texts[digest].encode(errors="surrogatepass")
-            self._file.attachment(f"{CHECKPOINT_TEXT}{digest}", "text/plain", content, 0)
+        write_new_texts(self._file, texts, self._texts, 0)
 
     def checkpoint(self, cycle: int, state: bytes) -> None:
         self._file.attachment(f"{CHECKPOINT}{cycle}", "application/octet-stream", state, 0)

@@ -156,6 +156,15 @@ class MessageFile(Protocol):
     def close(self) -> None: ...
 
 
+def write_new_texts(file: MessageFile, texts: Mapping[str, str], written: set[str], log_time: int) -> None:
+    """Long texts of checkpoints, by digest, but for those that are `written`."""
+    for digest in texts.keys() - written:
+        written.add(digest)
+        file.attachment(
+            f"{CHECKPOINT_TEXT}{digest}", "text/plain", texts[digest].encode(errors="surrogatepass"), log_time
+        )
+
+
 class Recording:
     """A recording being written.
 
@@ -283,10 +292,7 @@ class Recording:
 
     def checkpoint_texts(self, texts: Mapping[str, str]) -> None:
         """Long texts that states refer to, by digest; each is written once."""
-        for digest in texts.keys() - self._texts:
-            self._texts.add(digest)
-            content = texts[digest].encode(errors="surrogatepass")
-            self._file.attachment(f"{CHECKPOINT_TEXT}{digest}", "text/plain", content, self.stamps.start_ns)
+        write_new_texts(self._file, texts, self._texts, self.stamps.start_ns)
 
     # writing
 

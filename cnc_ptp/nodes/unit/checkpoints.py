@@ -39,13 +39,15 @@ class UnitCheckpoints:
         self._told: set[str] = set()
         self._publisher = node.create_publisher(msg.UnitCheckpoint, CHECKPOINTS, STATES_OF_UNITS)
 
-    def watch(self, runner: UnitRunner, block: CycleBlock, stamps: Stamps, *, paced: bool) -> None:
-        """The unit has computed and published a block, `paced`: in real time.
+    def is_due(self, next_cycle: int) -> bool:
+        """The unit has computed and published all blocks before a cycle."""
+        return next_cycle >= self._next
 
-        Raises CncError 26150 where its state cannot be stored, or not in time.
+    def publish(self, runner: UnitRunner, block: CycleBlock, stamps: Stamps, *, paced: bool) -> None:
+        """The state of the unit after a block, `paced`: in real time.
+
+        Raises CncError 26150 where it cannot be stored, or not in time.
         """
-        if runner.next_cycle < self._next:
-            return
         self._next = runner.next_cycle + self._cycles
         if not self._publisher.get_subscription_count():
             return

@@ -454,7 +454,7 @@ class UnitNode(PollingNode):
         self.after_block(block)
         if self._live_state is not None and not isinstance(block, PlcBlock):
             self._live_state.publish(block, self._stamps)
-        if self._checkpoints is not None:
+        if self._checkpoints is not None and self._checkpoints.is_due(self._runner.next_cycle):
             self._publish_checkpoint(self._checkpoints, block)
         self._end_if_over()
 
@@ -468,7 +468,7 @@ class UnitNode(PollingNode):
         """An event for the first one that cannot be stored; later ones may be those of another program."""
         try:
             with self._working():
-                checkpoints.watch(self._runner, block, self._stamps, paced=self.paced)
+                checkpoints.publish(self._runner, block, self._stamps, paced=self.paced)
         except CncError as error:
             if not self._has_told_state:
                 self._has_told_state = True

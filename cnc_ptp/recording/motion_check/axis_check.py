@@ -25,7 +25,7 @@ ADDED = ("move_superimposed", "compensation_start")
 STARTS = HELD_OFF["axis"] | {"external_setpoints", "decouple", "set_coupling_factor", "set_cyclic_factor"}
 """Commands that may move an axis that a stop has brought to rest."""
 STOPS = frozenset({"stop", "halt", "emergency_stop", "set_emergency_stop", "reset"})
-RAMPS = frozenset({"stop", "halt", "emergency_stop", "set_emergency_stop"})
+RAMPS = STOPS - {"reset"}
 """Commands after which it must come to rest: by then at the latest …"""
 PATIENCE = 1.5
 """… times the time of the ramp, and …"""
@@ -268,8 +268,7 @@ class AxisCheck:
         rests = np.flatnonzero(self.resting[:row])
         began = self.cycles[rests[-1]] if len(rests) else 0
         given = [each for each in self.orders if began <= each.cycle <= order.cycle]
-        braking = min(each.deceleration for each in own)
-        braking = min([braking, *(each.number("deceleration") or inf for each in given)])
+        braking = min([*(each.deceleration for each in own), *(each.number("deceleration") or inf for each in given)])
         jerk = min([*(each.jerk for each in own), *(each.number("jerk") or inf for each in given)])
         acceleration, velocity = abs(points.acceleration[row]), abs(points.velocity[row])
         turned = (acceleration + braking) / jerk
@@ -284,14 +283,8 @@ class AxisCheck:
             rows = slice(self.stretches.row(order.cycle), None)
             low[rows], high[rows] = parameters.soft_limit_negative, parameters.soft_limit_positive
         shift = self._shift()
-        homes = and_next(self.state == S.HOMING)  # it brakes behind its marker, wherever that is
-        free = (
-            ~self.referenced
-            | self.error
-            | homes
-            | since(self.led | self.external, self.resting)
-            | self._unknown_shift()
-        )
+        free = ~self.referenced | self.error | since(self.led | self.external, self.resting) | self._unknown_shift()
+        free |= and_next(self.state == S.HOMING)  # it brakes behind its marker, wherever that is
         blur = PLACES * np.spacing(np.abs(points.position) + np.abs(shift))
         blur += np.where(shift != 0.0, own.jerk * points.cycle_time**3, 0.0)
         dx = np.concatenate(([0.0], np.where(self.laws.placed, 0.0, np.diff(points.position))))
