@@ -261,6 +261,22 @@ def test_the_axis_page_shows_and_writes_parameters(mill):
     until(page, "document.querySelector('.parameters select')?.value === '1'")
 
 
+def test_what_is_entered_outlives_the_writing_of_another_parameter(mill):
+    page = mill("commission")
+    page.click("[role=tab]:text-is('Parameters')")
+    page.fill("[type=search]", "P-AXIS-00")
+    page.wait_for_selector(".parameters [aria-label^='P-AXIS-00255']")
+    page.select_option(".parameters select[aria-label^='P-AXIS-00255']", "1")
+    entered = ".parameters input[aria-label^='P-AXIS-00001']"
+    page.fill(entered, "7")
+    assert page.input_value(".parameters input[aria-label^='P-AXIS-00099']") != "4000"
+    page.evaluate("app.command('x', 'write_parameter', {parameter: 'P-AXIS-00099', value: 4000})")
+    until(page, "document.querySelector(\".parameters input[aria-label^='P-AXIS-00099']\").value === '4000'")
+    assert page.input_value(".parameters select[aria-label^='P-AXIS-00255']") == "1"
+    assert page.input_value(entered) == "7"
+    assert page.evaluate("selector => document.activeElement === document.querySelector(selector)", entered)
+
+
 def test_each_function_of_an_axis_has_its_form(mill):
     page = mill("commission")
     for tab in ("Functions", "Dynamics", "Coupling", "Compensation"):
