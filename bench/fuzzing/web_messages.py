@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
+from aiohttp import web_app
 from aiohttp.test_utils import TestServer
 
 from bench.fuzzing.engine import Broken, Target
@@ -150,6 +151,7 @@ class Site:
         self.hub.sessions.clear()  # the session has no socket that could be closed
         self.loop.run_until_complete(self.http.close())
         self.loop.close()
+        web_app._cached_build_middleware.cache_clear()  # it would keep the last servers
 
     async def settle(self) -> None:
         """Until all that was begun has been answered."""
