@@ -1,10 +1,10 @@
-"""Parameters and recorded samples over HTTP."""
+"""Parameters, words of the NC language and recorded samples over HTTP."""
 
 from __future__ import annotations
 
 import asyncio
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,8 @@ from cnc_ptp.client.faults import unknown_unit
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import ParameterSet, ros_descriptors
 from cnc_ptp.parameters.declare.declarations import catalogue
+from cnc_ptp.parameters.view.channel_view import channel_view
+from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.web.access.access import Access
 from cnc_ptp.web.access.guard import HEADERS
 from cnc_ptp.web.access.rights import require_role
@@ -27,31 +29,35 @@ from cnc_ptp.web.rate import Rate
 
 PIECE = 1 << 18
 """Bytes of a file that are sent together."""
+Words = Callable[[str], Sequence[tuple[str, str]]]
+"""A vocabulary, twincat or iso -> its words, each with its meaning: the tables of the language are a floor above."""
 NOT_STORED = {"Cache-Control": "no-store"}
 
 
 class DataRoutes:
-    """/api/parameters, /api/curve, /api/recorded, /api/snapshot.mcap"""
+    """/api/parameters, /api/curve, /api/words, /api/recorded, /api/snapshot.mcap"""
 
-    def __init__(self, hub: Hub, access: Access) -> None:
-        self._hub, self._access = hub, access
+    def __init__(self, hub: Hub, access: Access, words: Words) -> None:
+        self._hub, self._access, self._words_of = hub, access, words
         self._snapshot_runs = asyncio.Lock()
         self._rate = Rate(10.0, 50.0)
 
     def add_to(self, app: web.Application) -> None:
         app.router.add_get("/api/parameters", self._parameters)
         app.router.add_get("/api/curve", self._curve)
+        app.router.add_get("/api/words", self._words)
         app.router.add_get("/api/recorded", self._recorded)
         app.router.add_get("/api/snapshot.mcap", self._snapshot)
 
     async def _parameters(self, request: web.Request) -> web.StreamResponse:
-        """`?unit=x`: all its parameters, as the machine file has them."""
+        """`?unit=x`: all its parameters, as the machine file has them; of the plc those of the machine."""
         self._access.login_of(request)
         face, unit = self._hub.require_face(), request.query.get("unit", "")
-        if unit not in face.sets:
-            raise unknown_unit(unit, face.sets)
+        sets = {**face.sets, PLC: face.machine_set}
+        if unit not in sets:
+            raise unknown_unit(unit, sets)
         self._require_rate()
-        listed = await asyncio.to_thread(lambda: [*described(face.sets[unit])])
+        listed = await asyncio.to_thread(lambda: [*described(sets[unit])])
         text = frame({"unit": unit, "parameters": listed})
         response = web.Response(text=text, content_type="application/json", headers=NOT_STORED)
         response.enable_compression()
@@ -66,10 +72,21 @@ class DataRoutes:
         """`?spindle=s`: acceleration over speed of each gear."""
         self._access.login_of(request)
         face, spindle = self._hub.require_face(), request.query.get("spindle", "")
-        if face.kinds.get(spindle) != "spindle":
-            raise unknown_unit(spindle, [unit for unit, kind in face.kinds.items() if kind == "spindle"], "spindle")
+        face.require_kind(spindle, "spindle")
         gears = spindle_curve(face.sets[spindle], face.cycle_time)
         return web.json_response({"spindle": spindle, "gears": gears}, headers=NOT_STORED)
+
+    async def _words(self, request: web.Request) -> web.StreamResponse:
+        """`?channel=C`: the words that its programs know, with their meaning."""
+        self._access.login_of(request)
+        face, channel = self._hub.require_face(), request.query.get("channel", "")
+        face.require_kind(channel, "channel")
+        dialect = channel_view(face.sets[channel], face.sets, Path()).dialect
+        listed = await asyncio.to_thread(self._words_of, dialect)
+        words = [{"name": name, "meaning": meaning} for name, meaning in listed]
+        response = web.json_response({"words": words}, headers=NOT_STORED)
+        response.enable_compression()
+        return response
 
     async def _recorded(self, request: web.Request) -> web.StreamResponse:
         """`?signals=x.set_position,…&from=s&to=s&points=N`: a frame as of the scope, `&bits=32` with half the bytes."""
@@ -86,7 +103,10 @@ class DataRoutes:
         return web.Response(body=data, content_type="application/octet-stream", headers=NOT_STORED)
 
     async def _snapshot(self, request: web.Request) -> web.StreamResponse:
-        """`?seconds=N`: the last seconds of the machine as a recording, where it has a recorder."""
+        """`?seconds=N`: the last seconds of the machine as a recording, where it has a recorder.
+
+        `X-First-Cycle` of the answer: where it begins; later than asked for where the recorder has kept less.
+        """
         login = self._access.login_of(request)
         require_role("snapshot", login.user, login.role, "operator")
         seconds = number(request.query.get("seconds", "0"))
@@ -95,13 +115,13 @@ class DataRoutes:
         async with self._snapshot_runs:
             with tempfile.TemporaryDirectory(prefix="cnc_ptp-") as folder:
                 file = Path(folder) / "snapshot.mcap"
-                await self._hub.require_face().snapshot(str(file), seconds)
-                return await sent(request, file)
+                first = await self._hub.require_face().snapshot(str(file), seconds)
+                return await sent(request, file, {"X-First-Cycle": str(first)})
 
 
-async def sent(request: web.Request, file: Path) -> web.StreamResponse:
-    """Piece by piece: it may be larger than the memory."""
-    headers = {**HEADERS, **NOT_STORED, "Content-Disposition": f'attachment; filename="{file.name}"'}
+async def sent(request: web.Request, file: Path, fields: Mapping[str, str]) -> web.StreamResponse:
+    """Piece by piece: it may be larger than the memory. `fields`: of its head."""
+    headers = {**HEADERS, **NOT_STORED, **fields, "Content-Disposition": f'attachment; filename="{file.name}"'}
     response = web.StreamResponse(headers=headers)
     response.content_type, response.content_length = "application/octet-stream", file.stat().st_size
     await response.prepare(request)

@@ -48,7 +48,7 @@ class Hub:
         self.face: Face | None = None
         self.sessions: list[Session] = []
         self.right = CommandRight()
-        self._shared: View | None = None
+        self.shared: View | None = None
         """Of all pages of a machine that runs."""
         self._views: list[View] = []
         self.why_none = WAITING
@@ -97,7 +97,7 @@ class Hub:
         self.face, self._views = face, []
         self.programs = ProgramWatch(self.folder, is_recording=face.is_recording)
         self.programs.take_state({}, face.last_loads())
-        self._shared = None if face.is_recording else self._view(face, self.programs)
+        self.shared = None if face.is_recording else self._view(face, self.programs)
         for session in self.sessions:
             self._show(session, face)
             session.send({"type": "back"})
@@ -132,10 +132,10 @@ class Hub:
     def _show(self, session: Session, face: Face) -> None:
         """A page sees a machine; of a recording at a time of its own."""
         self._hide(session)
-        if self._shared is None:
+        if self.shared is None:
             session.view = self._view(face.for_page(), ProgramWatch(self.folder, is_recording=True))
         else:
-            session.view = self._shared
+            session.view = self.shared
         session.view.pages.append(session)
 
     def _hide(self, session: Session) -> None:

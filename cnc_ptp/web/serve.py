@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import signal
 import socket
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 
@@ -22,9 +22,17 @@ def machine_name(options: WebOptions) -> str:
 
 
 async def serve(
-    connect: Callable[[], Face], options: WebOptions, listening: socket.socket, *, tell: Callable[[str], None]
+    connect: Callable[[], Face],
+    options: WebOptions,
+    listening: socket.socket,
+    *,
+    words: Callable[[str], Sequence[tuple[str, str]]],
+    tell: Callable[[str], None],
 ) -> None:
-    """Until SIGINT or SIGTERM. `connect` gives the face of the machine; `tell` gets the address."""
+    """Until SIGINT or SIGTERM. `connect` gives the face of the machine, `words` those of a vocabulary of NC programs.
+
+    `tell` gets the address.
+    """
     from aiohttp import web
 
     from cnc_ptp.web.access.access import Access
@@ -38,7 +46,7 @@ async def serve(
     entry(NO_PORT)  # the catalogue is read now, and not when the first page gets an error
     hub = Hub(connect, folder=ProgramFolder(options.programs), name=machine_name(options), machine_file=options.machine)
     access = Access(None if options.users is None else Users(options.users))
-    server = Server(hub, access, Names((*LOCAL_NAMES, options.host, *options.names)))
+    server = Server(hub, access, Names((*LOCAL_NAMES, options.host, *options.names)), words=words)
     runner = web.AppRunner(server.app, access_log=None)
     await runner.setup()
     await web.SockSite(runner, listening, ssl_context=tls).start()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import count
 from typing import Any
 
@@ -11,7 +12,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.web.access.access import Access, cookie_name
 from cnc_ptp.web.access.guard import Names, make_guard
 from cnc_ptp.web.access.logins import Login
-from cnc_ptp.web.data_routes import DataRoutes
+from cnc_ptp.web.data_routes import DataRoutes, Words
 from cnc_ptp.web.hub import Hub
 from cnc_ptp.web.numbers import BAD_MESSAGE, TOO_MANY_SESSIONS
 from cnc_ptp.web.page_socket import PageSocket
@@ -31,10 +32,15 @@ NUMBERS = count(1)
 """Of pages."""
 
 
+def no_words(_dialect: str) -> Sequence[tuple[str, str]]:
+    return ()
+
+
 class Server:
     """Routes of one machine; `app` is what aiohttp runs."""
 
-    def __init__(self, hub: Hub, access: Access, names: Names) -> None:
+    def __init__(self, hub: Hub, access: Access, names: Names, *, words: Words = no_words) -> None:
+        """`words` that MDI completes."""
         self.hub, self.access = hub, access
         self._static = StaticFiles()
         self.app = web.Application(middlewares=[make_guard(names)], client_max_size=LARGEST_MESSAGE)
@@ -47,7 +53,7 @@ class Server:
         self.app.router.add_get("/ws", self._socket)
         self.app.router.add_get("/static/{name:.+}", self._static.serve)
         ProgramRoutes(hub, access).add_to(self.app)
-        DataRoutes(hub, access).add_to(self.app)
+        DataRoutes(hub, access, words).add_to(self.app)
 
     async def _begin(self, _app: web.Application) -> None:
         self.hub.begin()

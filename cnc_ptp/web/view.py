@@ -78,12 +78,13 @@ class View:
         for request in news.requests:
             self.tell_request(request)
         for record in news.records:
-            self._tell_answered(record, news.blocks)
+            self._tell_answered(record, news.blocks, units)
         for unit, block in news.blocks:
             if isinstance(block, ChannelBlock):
                 self._distances.take_block(unit, block)
                 self._tell_offsets(unit, block)
                 self.drop_handshakes(unit, block)
+        self._tell_tables()
         if news.diagnostics:
             self.to_all({"type": "diagnostics", "nodes": [*news.diagnostics]})
         distances = self._distances.fields(units, self._state, self.targets.positions)
@@ -129,7 +130,7 @@ class View:
             self.handshakes[request.id] = request_fields(request)
             self.to_all({"type": "handshake", **request_fields(request)})
 
-    def _tell_answered(self, record: CommandRecord, blocks: Sequence[tuple[str, CycleBlock]]) -> None:
+    def _tell_answered(self, record: CommandRecord, blocks: Sequence[tuple[str, CycleBlock]], units: State) -> None:
         """A request that was acknowledged, an offset that was changed, by whomever."""
         self._switches.take_record(record)
         self.targets.take_record(record, blocks, self._state)
@@ -137,7 +138,7 @@ class View:
         if record.command == WRITE_PARAMETER and record.accepted:
             self._tell_parameters(record.target)
         if record.target in self.tables:
-            self.tables[record.target].take_record(record)
+            self.tables[record.target].take_record(record, units)
         if record.command == "acknowledge" and record.accepted:
             self._end_handshake(json.loads(record.arguments_json).get("id"))
 
@@ -174,6 +175,12 @@ class View:
         for offsets in block.offsets:
             self._take_offsets(channel, offsets)
             self.to_all({"type": "offsets", **self.offsets[channel]})
+
+    def _tell_tables(self) -> None:
+        """The zero offsets of channels, as they were changed."""
+        for channel, table in self.tables.items():
+            if (shown := table.news()) is not None:
+                self.to_all({"type": "zero_offsets", "channel": channel, **shown})
 
     def _take_offsets(self, channel: str, offsets: ChannelOffsets) -> None:
         self.tables[channel].take_active(offsets)

@@ -121,12 +121,12 @@ def test_a_program_waits_for_a_page_and_a_page_takes_a_snapshot(ros_domain, mach
             reply = await session.get(f"http://127.0.0.1:{port}/api/snapshot.mcap?seconds=1")
             assert reply.status == 200, await reply.text()
             snapshot.write_bytes(await reply.read())
-            return first["cycle"], answer["cycle"]
+            return first["cycle"], answer["cycle"], int(reply.headers["X-First-Cycle"])
 
     run = Running(machine, "--composed", "--web", str(port), "--stay", "--keep", "5", "--record", str(recording))
     try:
         wait_for_server(run)
-        asked, acknowledged = asyncio.run(story())
+        asked, acknowledged, begin = asyncio.run(story())
         run.process.send_signal(signal.SIGINT)
         run.finish(0)
     finally:
@@ -138,6 +138,7 @@ def test_a_program_waits_for_a_page_and_a_page_takes_a_snapshot(ros_domain, mach
     assert states["set_position"][-1] == 2.0
     taken = verified(snapshot).states["/x/state"]
     assert set(taken["set_position"]) <= set(states["set_position"]) and len(taken) >= 1000
+    assert taken["cycle"][0] == begin
 
 
 def test_a_run_is_killed_and_its_server_ends(ros_domain, machine):

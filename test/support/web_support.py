@@ -14,7 +14,7 @@ from cnc_ptp.web.faces.machine_face import offline_face
 from cnc_ptp.web.faces.scope import HEAD
 from cnc_ptp.web.hub import Hub
 from cnc_ptp.web.programs.programs import ProgramFolder
-from cnc_ptp.web.server import Server
+from cnc_ptp.web.server import Server, no_words
 
 ROOT = Path(__file__).parents[2]
 MILL = str(ROOT / "config" / "mill.yaml")
@@ -106,13 +106,13 @@ class Site:
 
 
 @asynccontextmanager
-async def site(machine=MILL, *, connect=None, users=None, programs=EXAMPLES, waits=True):
+async def site(machine=MILL, *, connect=None, users=None, programs=EXAMPLES, waits=True, words=no_words):
     """`connect` gives the face; the one of an offline machine without it."""
     hub = Hub(
         connect or (lambda: offline_face(machine)), name="mill", folder=ProgramFolder(programs), machine_file=machine
     )
     access = Access(None if users is None else Users(str(users)))
-    server = Server(hub, access, Names())
+    server = Server(hub, access, Names(), words=words)
     client = TestClient(TestServer(server.app))
     await client.start_server()
     try:

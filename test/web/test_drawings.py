@@ -59,7 +59,7 @@ def test_a_newer_program_of_a_channel_ends_the_drawing_of_an_older_one(face, wai
         assert HEAD.unpack_from(newest) == (1, 3, 0, 0)
         refusals = await asyncio.gather(*older, return_exceptions=True)
         for number, refused in enumerate(refusals):
-            text = f"backplot of old{number}.nc: the channel has another program; nothing is shown"
+            text = f"backplot of old{number}.nc: the channel has another program, or other offsets; nothing is shown"
             assert (refused.number, refused.message) == (26253, text)
         drawn = await orders[0].task
         assert drawn == b"" or HEAD.unpack_from(drawn)[1] < MOST_POINTS
@@ -116,7 +116,7 @@ def test_a_page_gets_the_drawing_of_its_newest_program():
             new = await asyncio.wait_for(here.client.get("/api/backplot"), PATIENCE)
             assert HEAD.unpack_from(await new.read())[1] == 3
             error = await (await old).json()
-            text = "backplot of old.nc: the channel has another program; nothing is shown"
+            text = "backplot of old.nc: the channel has another program, or other offsets; nothing is shown"
             assert (error["number"], error["text"]) == (26253, text)
 
     asyncio.run(story())

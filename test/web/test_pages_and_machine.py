@@ -1,9 +1,16 @@
 """A page says hello, sees the machine, commands it."""
 
 import asyncio
+from math import sqrt
 
+import numpy as np
+import pytest
 from web_support import ROOT, site
 
+from cnc_ptp.commands.run.web import words_of
+from cnc_ptp.parameters import CurveParameters, machine_text, read_machine
+from cnc_ptp.spindle.acceleration_curves import AccelerationCurve
+from cnc_ptp.web.commissioning.spindle_curve import curve_points, spindle_curve
 from cnc_ptp.web.programs.backplot import HEAD
 
 
@@ -78,14 +85,60 @@ def test_the_scope_has_every_cycle():
 def test_zero_offsets_and_their_changes():
     async def story():
         async with site() as here:
-            page = await here.page()
+            page, other = await here.page(), await here.page(commands=False)
             assert (await page.ask("offsets"))["axes"] == ["X", "Y", "Z"]
             assert (await page.command("channel", "set_zero_offset", index=2, axis="X", value=12.5))["ok"]
-            assert (await page.command("channel", "teach_zero_offset", index=3))["ok"]
-            await page.wait_for("event", lambda event: "teach_zero_offset" in event["text"])
-            rows = {row["index"]: row for row in (await page.ask("offsets"))["offsets"]}
-            assert rows[2] == {"index": 2, "name": "G55", "values": {"X": 12.5, "Y": 0.0, "Z": 0.0}}
-            assert rows[3]["values"] == {"X": None, "Y": None, "Z": None}
+            assert rows_of(await other.wait_for("zero_offsets"))[2] == {"X": 12.5, "Y": 0.0, "Z": 0.0}
+            assert (await page.command("x", "move_absolute", target=1.5))["ok"]
+            await page.state_of("x", lambda x: x["set_position"] == 1.5 and x["state"] == "Standstill")
+            assert (await page.command("channel", "teach_zero_offset", index=3, value=-2))["ok"]
+            told = await other.wait_for("zero_offsets")
+            assert told["channel"] == "channel" and rows_of(told)[3] == {"X": 3.5, "Y": 2.0, "Z": 2.0}
+            answer = await page.ask("offsets")
+            assert [row["name"] for row in answer["offsets"] if row["index"] in (2, 3)] == ["G55", "G56"]
+            assert rows_of(answer) == rows_of(told)
+
+
+def rows_of(message):
+    return {row["index"]: row["values"] for row in message["offsets"]}
+
+
+def test_a_backplot_has_the_zero_offsets_of_now():
+    async def story():
+        async with site() as here:
+            page = await here.page()
+            assert (await page.ask("load", name="part.nc", text="G55 G01 X10 Y0 Z0 F1000\nX20\nM30\n"))["ok"]
+            await page.wait_for("program")
+            before = await ends(here)
+            for axis, value in (("X", 12.5), ("Z", -3.0)):
+                assert (await page.command("channel", "set_zero_offset", index=2, axis=axis, value=value))["ok"]
+                await page.wait_for("zero_offsets")
+            assert before == [(10.0, 0.0, 0.0), (20.0, 0.0, 0.0)]
+            assert await ends(here) == [(22.5, 0.0, -3.0), (32.5, 0.0, -3.0)]
+
+    asyncio.run(story())
+
+
+async def ends(here):
+    """Of the lines of a backplot."""
+    drawn = await (await here.client.get("/api/backplot")).read()
+    rows = np.frombuffer(drawn, "<f4", offset=HEAD.size).reshape(-1, 5)
+    return [tuple(map(float, row[:3])) for row in rows[1:]]
+
+
+def test_a_taught_offset_is_what_a_program_finds():
+    """The page computes it; the channel tells it when it becomes active."""
+
+    async def story():
+        async with site() as here:
+            page = await here.page()
+            assert (await page.command("x", "move_absolute", target=1.23456789))["ok"]
+            await page.state_of("x", lambda x: x["state"] == "Standstill" and x["set_position"] > 1)
+            assert (await page.command("channel", "teach_zero_offset", index=2, value=0.5))["ok"]
+            taught = rows_of(await page.wait_for("zero_offsets"))[2]
+            assert (await page.command("channel", "mdi", text="G55"))["ok"]
+            active = await page.wait_for("offsets", lambda offsets: offsets["zero_index"] == 2)
+            assert [*taught.values()] == pytest.approx(active["zero_offset"], abs=1e-6)
 
     asyncio.run(story())
 
@@ -98,8 +151,75 @@ def test_the_curve_of_a_spindle():
             spindle = next(unit for unit, kind in machine.kinds.items() if kind == "spindle")
             told = await (await here.client.get("/api/curve", params={"spindle": spindle})).json()
             points = told["gears"][0]["points"]
-            assert len(points) == 101 and points[0]["speed"] == 0.0
+            assert [point["break"] for point in points].count(False) == 101 and points[0]["speed"] == 0.0
             assert points[-1]["acceleration"] < points[0]["acceleration"]
+
+    asyncio.run(story())
+
+
+def test_offsets_of_a_facing_axis_are_diameters_where_the_machine_wants_that(tmp_path):
+    """P-CHAN-00091: commands and the table have diameters; the axis goes by radii, and topics show them."""
+    lathe = tmp_path / "lathe.yaml"
+    text = machine_text(str(ROOT / "config" / "lathe.yaml"))
+    lathe.write_text(
+        text.replace("    spdl_anzahl: 2", "    versch_im_durchm: 1\n    spdl_anzahl: 2"), encoding="utf-8"
+    )
+
+    async def story():
+        async with site(str(lathe)) as here:
+            page = await here.page()
+            assert (await page.command("channel", "set_zero_offset", index=2, axis="X", value=40))["ok"]
+            assert rows_of(await page.wait_for("zero_offsets"))[2]["X"] == 40.0
+            assert (await page.ask("load", name="part.nc", text="G18 G55 G00 X0 Z0\nM30\n"))["ok"]
+            await page.wait_for("program")
+            assert (await ends(here))[-1][0] == 20.0
+            assert (await page.command("channel", "mdi", text="G55"))["ok"]
+            active = await page.wait_for("offsets", lambda offsets: offsets["zero_index"] == 2)
+            assert active["zero_offset"][active["axes"].index("X")] == 20.0
+            assert rows_of(await page.ask("offsets"))[2]["X"] == 40.0
+            assert (await page.command("channel", "teach_zero_offset", index=3, axis="X", value=-5))["ok"]
+            taught = rows_of(await page.wait_for("zero_offsets"))[3]["X"]
+            here_x = (await page.state_of("x", lambda x: "set_position" in x))["set_position"]
+            assert taught == pytest.approx(2 * (here_x + 5))
+
+    asyncio.run(story())
+
+
+BREAKS = {
+    "polynomial": [(2000.0, 16000.0), (8000.0, 2000.0)],
+    "hyperbola": [(2000.0, 16000.0)],
+    "asynchronous": [(10000.0 / 6, 16000.0), (20000.0 / 6, 8000.0), (sqrt(16000.0 * 1e4 * 2e4 / 4000.0) / 6, 4000.0)],
+}
+"""Speed (rpm) and acceleration (deg/s²) of config/spindle_curves.yaml where the law changes: n_grenz, n1, n2, a_min."""
+
+
+def test_the_break_points_of_the_curves_are_exact_and_in_their_order():
+    machine = read_machine(str(ROOT / "config" / "spindle_curves.yaml"))
+    for spindle, expected in BREAKS.items():
+        (gear,) = spindle_curve(machine.sets[spindle], 1e-3)
+        speeds = [point["speed"] for point in gear["points"]]
+        assert speeds == sorted(speeds)
+        found = [(point["speed"], point["acceleration"]) for point in gear["points"] if point["break"]]
+        assert np.array(found) == pytest.approx(np.array(expected), rel=1e-6)
+
+
+def test_both_sides_of_a_step_are_points():
+    """A hyperbola whose b1 does not meet a_konst at n_grenz: 6000 °/s² before, 5000 °/s² behind it."""
+    parameters = CurveParameters("hyperbola", 100.0, 6000.0, 6000.0, 5000.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    curve = AccelerationCurve(parameters, top_speed=12000.0)
+    points = curve_points(curve, [0.0, 6000.0, 12000.0])
+    assert points == [(0.0, 6000.0, False), (6000.0, 6000.0, True), (6000.0, 5000.0, True), (12000.0, 5000.0, False)]
+
+
+def test_the_words_of_a_channel():
+    async def story():
+        async with site(words=words_of) as here:
+            await here.page(commands=False)
+            listed = (await (await here.client.get("/api/words", params={"channel": "channel"})).json())["words"]
+            words = {word["name"]: word["meaning"] for word in listed}
+            assert words["G00"] == "Straight at rapid speed." and "M03" in words and "#TIMER START" in words
+            assert "G106" not in words  # not built
+            assert (await here.client.get("/api/words", params={"channel": "x"})).status == 400
 
     asyncio.run(story())
 

@@ -173,6 +173,7 @@ def test_a_snapshot_is_sent_piece_by_piece_and_alone(monkeypatch, users):
         await may_end.wait()
         with open(file, "wb") as stream:
             stream.write(b"x" * 600_000)
+        return 1230
 
     async def story(here):
         monkeypatch.setattr(here.hub.face, "snapshot", snapshot)
@@ -189,6 +190,7 @@ def test_a_snapshot_is_sent_piece_by_piece_and_alone(monkeypatch, users):
         may_end.set()
         answer = await first
         assert await answer.read() == b"x" * 600_000 and answer.headers["X-Frame-Options"] == "DENY"
+        assert answer.headers["X-First-Cycle"] == "1230"
 
     run(story, users=users)
 

@@ -38,6 +38,19 @@ def test_a_parameter_that_was_refused_stays():
     asyncio.run(story())
 
 
+def test_the_parameters_of_the_machine_are_those_of_the_plc():
+    async def story():
+        async with site() as here:
+            await here.page(commands=False)
+            listed = await (await here.client.get("/api/parameters", params={"unit": "plc"})).json()
+            rows = {row["id"]: row for row in listed["parameters"]}
+            assert rows.keys() >= {"P-MACH-00001", "P-MACH-00005", "P-MACH-00084"}
+            assert all(number.startswith("P-MACH-") and row["change"] == "start" for number, row in rows.items())
+            assert (rows["P-MACH-00001"]["value"], rows["P-MACH-00005"]["value"]) == (1000, ["x", "y", "z"])
+
+    asyncio.run(story())
+
+
 async def parameter(here, number):
     listed = await (await here.client.get("/api/parameters", params={"unit": "x"})).json()
     return next(row for row in listed["parameters"] if row["id"].startswith(number))

@@ -22,6 +22,13 @@ CYCLES = 50
 """Of a frame of the scope."""
 FIELDS = ("set_position", "actual_position", "set_velocity", "actual_velocity", "following_error", "command_velocity")
 NASTY = "<script>window.hacked = true</script>.nc"
+WORDS = (
+    ("G00", "Straight at rapid speed."),
+    ("G01", "Straight at the feed."),
+    ("G54", "Zero offset 1."),
+    ("M03", "Spindle clockwise."),
+    ("#TIMER START", "Starts a timer."),
+)
 SNAPSHOT = bytes(range(256)) * 40
 PROGRAM = "\n".join(["%demo", *(f"N{10 * i} G1 X{i % 100} Y{i % 37} F1200" for i in range(1, 400)), "N9999 M30"])
 
@@ -90,6 +97,10 @@ class Fake:
         """Type of a message -> number and text with which it is refused."""
         self.snapshots: list[str] = []
         """Seconds of each snapshot that was asked for."""
+        self.kept_from = 0
+        """The first cycle that the recorder still has."""
+        self.drawn = 0
+        """How often a backplot was asked for."""
         self.task = 0
         self.needs_welcome = False
         """Who is not logged in is by looking at the page."""
@@ -121,6 +132,7 @@ class Fake:
         self.app.router.add_get("/api/backplot", self._backplot)
         self.app.router.add_get("/api/parameters", self._parameters)
         self.app.router.add_get("/api/curve", self._curve)
+        self.app.router.add_get("/api/words", self._words)
         self.app.router.add_get("/api/recorded", self._recorded)
         self.app.router.add_get("/api/snapshot.mcap", self._snapshot)
         self.app.router.add_get("/ws", self._socket)
@@ -175,6 +187,7 @@ class Fake:
 
     async def _backplot(self, _request: web.Request) -> web.Response:
         n = self.points  # as it was when it was asked for
+        self.drawn += 1
         if self.backplot_delays:
             await asyncio.sleep(self.backplot_delays.pop(0))
         if self.backplot_fails:
@@ -198,13 +211,23 @@ class Fake:
     async def _parameters(self, request: web.Request) -> web.Response:
         rows = [
             {"id": "P-AXIS-00099", "name": "getriebe[0].kv", "value": 5000, "unit": "0.01/s", "min": 0, "max": 60000, "default": 1000, "text": "Kv of the position controller", "topic": "Position controller", "change": "now"},
+            {"id": "P-AXIS-00099", "name": "getriebe[1].kv", "value": 2500, "unit": "0.01/s", "min": 0, "max": 60000, "default": 1000, "text": "Kv of the position controller", "topic": "Position controller", "change": "now"},
             {"id": "P-AXIS-00212", "name": "vb_max", "value": 200000, "unit": "µm/s", "min": 1, "max": 1e9, "default": 10000, "text": "largest velocity <b>", "topic": "Dynamics", "change": "start"},
         ]  # fmt: skip
+        if request.query["unit"] == "plc":
+            rows = [{"id": "P-MACH-00003", "name": "watchdog_ms", "value": 200, "unit": "ms", "min": 1, "max": 60000, "default": 200, "text": "Time without a block", "topic": "Machine", "change": "start"}]  # fmt: skip
         return web.json_response({"unit": request.query["unit"], "parameters": rows})
 
     async def _curve(self, _request: web.Request) -> web.Response:
-        points = [{"speed": n, "acceleration": 6000 if n < 3000 else 18e6 / n} for n in range(0, 12001, 500)]
+        points = [
+            {"speed": n, "acceleration": 6000 if n < 3000 else 18e6 / n, "break": n == 3000}
+            for n in range(0, 12001, 500)
+        ]
         return web.json_response({"gears": [{"gear": 1, "kind": "hyperbola", "points": points}]})
+
+    async def _words(self, request: web.Request) -> web.Response:
+        assert request.query["channel"] == "channel"
+        return web.json_response({"words": [{"name": name, "meaning": meaning} for name, meaning in WORDS]})
 
     async def _recorded(self, request: web.Request) -> web.Response:
         names = request.query["signals"].split(",")
@@ -221,7 +244,9 @@ class Fake:
         self.snapshots.append(request.query["seconds"])
         if refusal := self.refusals.get("snapshot"):
             return web.json_response(refusal, status=400)
-        return web.Response(body=SNAPSHOT, content_type="application/octet-stream")
+        first = max(self.kept_from, self.cycle - round(float(self.snapshots[-1]) * 1000))
+        fields = {"X-First-Cycle": str(first)}
+        return web.Response(body=SNAPSHOT, content_type="application/octet-stream", headers=fields)
 
     # the socket
 
@@ -328,7 +353,7 @@ class Fake:
         elif kind == "accept":
             fields = {"file": f"/machines/{message['file']}"}
         elif kind == "offsets":
-            values = {"X": 12.5, "Y": 0.0, "Z": None}
+            values = {"X": 12.5, "Y": 0.0, "Z": -3.0}
             fields = {"axes": ["X", "Y", "Z"], "offsets": [{"index": 1, "name": "G54", "values": values}]}
         elif kind == "acknowledge":
             await self.tell(

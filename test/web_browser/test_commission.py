@@ -1,5 +1,6 @@
 """Commission: identification and circle test as tasks of the server; the snapshot of the scope."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -114,6 +115,44 @@ def test_a_snapshot_of_the_recorder_is_saved(look, fake):
     assert download.value.suggested_filename == "snapshot.mcap"
     assert Path(download.value.path()).read_bytes() == SNAPSHOT
     assert fake.snapshots == ["5"]
+
+
+def test_a_snapshot_of_a_frozen_scope_has_its_window(look, fake):
+    page = look("scope")
+    until(page, "(/([0-9]+) samples/.exec(document.querySelector('main').innerText) || [0, 0])[1] > 2500")
+    page.click("button:text-is('Freeze')")
+    frozen = fake.cycle
+    eventually(page, lambda: fake.cycle > frozen + 1500)
+    with page.expect_download():
+        page.click("text=MCAP snapshot")
+    told = page.wait_for_selector(".notice.info >> text=/The snapshot has .* until now/").inner_text()
+    first, shown = re.fullmatch(
+        r"The snapshot has ([\d.]+) s until now; the picture begins at ([\d.]+) s\.", told
+    ).groups()
+    with page.expect_download() as download:
+        page.click("text=Export CSV")
+    begin = float(Path(download.value.path()).read_text(encoding="utf-8").splitlines()[1].split(",")[1])
+    assert float(first) <= float(shown) == begin < frozen / 1000
+    assert float(fake.snapshots[-1]) <= (fake.cycle / 1000 - begin) + 1.1  # no more than it takes
+    fake.kept_from = fake.cycle
+    with page.expect_download():
+        page.click("text=MCAP snapshot")
+    page.wait_for_selector(f".notice.warning >> text=the picture begins at {shown} s, which the recorder no longer has")
+
+
+def test_the_machine_has_its_parameters_and_nothing_else(look):
+    page = look("commission")
+    page.select_option("label:text-is('Unit') + select", label="Machine")
+    page.wait_for_selector(".parameters >> text=P-MACH-00003")
+    assert page.locator("[role=tab]").all_inner_texts() == ["Parameters"]
+    assert page.locator(".parameters tbody tr").count() == 1
+
+
+def test_elements_of_an_array_have_a_line_each(look):
+    page = look("commission")
+    page.click("[role=tab]:text-is('Parameters')")
+    page.wait_for_selector(".parameters >> text=getriebe[1].kv")
+    assert page.locator(".parameters tr:has-text('P-AXIS-00099')").count() == 2
 
 
 def test_a_snapshot_without_a_recorder_is_refused(look, fake):

@@ -334,6 +334,44 @@ def test_mdi_has_a_history_and_completes(look, fake):
     assert field.input_value() == "G0 X10 Y20"
 
 
+def test_mdi_completes_what_the_channel_knows_and_says_what_it_means(look):
+    page = look(command=True)
+    field = page.locator("[aria-label='NC text to execute']")
+    field.focus()
+    page.wait_for_load_state("networkidle")
+    field.press_sequentially("g5")
+    page.wait_for_selector(".offers li:has-text('G54') >> text=Zero offset 1.")
+    field.press("Tab")
+    assert field.input_value() == "G54"
+    field.press_sequentially(" x")
+    page.wait_for_selector(".offers li >> text=axis x, mm")
+    field.fill("G0 X1 #timer st")
+    field.press("Tab")
+    assert field.input_value() == "G0 X1 #TIMER START"
+
+
+def test_completions(look):
+    page = look("alarms")
+    found = page.evaluate(
+        """async () => {
+        const { completions } = await import('/static/operate/mdi.js');
+        const words = [["G00", "rapid"], ["G01", "feed"], ["G10", "ten"], ["M03", "on"], ["#CS ON", "system"], ["X", "axis x"]].map(([name, meaning]) => ({ name, meaning }));
+        const of = (text) => completions(text, ["G1 X5", "M3"], words).map(({ text, meaning }) => `${text}: ${meaning}`);
+        return [of(""), of("g0"), of("g1"), of("G1 X"), of("#c"), of("G1 #CS o"), of("Q"), of("G1 ")];
+    }"""
+    )
+    assert found == [
+        [],
+        ["G00: rapid", "G01: feed"],
+        ["G1 X5: ", "G01: feed", "G10: ten"],
+        ["G1 X5: ", "G1 X: axis x"],
+        ["#CS ON: system"],
+        ["G1 #CS ON: system"],
+        [],
+        ["G1 X5: "],
+    ]
+
+
 def test_a_handshake_is_acknowledged(look, server, fake):
     page = look(command=True)
     server.do(fake.request(kind="M", number=6))
@@ -380,11 +418,14 @@ def test_positions_of_work_and_machine(look, fake):
     assert page.inner_text("[data-axis=z] .big") == "−5.004"
 
 
-def test_offsets_are_shown_set_and_taught(look, fake):
+def test_offsets_are_shown_set_and_taught(look, server, fake):
     page = look(command=True)
     cell = page.locator("[aria-label='G54 X']")
     eventually(page, lambda: cell.input_value() == "12.5")
-    assert page.locator("[aria-label='G54 Z']").get_attribute("placeholder") == "taught"
+    assert page.locator("[aria-label='G54 Z']").input_value() == "-3"
+    rows = [{"index": 1, "name": "G54", "values": {"X": 7.5, "Y": 0.0, "Z": -3.0}}]
+    server.do(fake.tell({"type": "zero_offsets", "channel": "channel", "axes": ["X", "Y", "Z"], "offsets": rows}))
+    eventually(page, lambda: cell.input_value() == "7.5")
     cell.fill("-4")
     cell.press("Enter")
     eventually(page, lambda: commands(fake)[-1] == ("set_zero_offset", {"index": 1, "axis": "X", "value": -4}))

@@ -71,17 +71,72 @@ def test_a_math_channel_and_a_view_that_is_kept(look):
     page.wait_for_selector(".channels >> text=twice = 2 * x.set_velocity")
 
 
-def test_export_has_every_cycle(look):
+SPECTRUM = "section:has-text('Spectrum') >> label:text-is('Signal') + select"
+X, Y = "label:text-is('X') + select", "label:text-is('Y') + select"
+
+
+def chosen(page):
+    """Signals of the spectrum and of the XY plot, and the cursors."""
+    values = [page.input_value(choice) for choice in (SPECTRUM, X, Y)]
+    return values + [page.input_value(f"[data-cursor={name}]") for name in "AB"]
+
+
+def choose_view(page, name):
+    page.reload()
+    until(page, "window.app && app.store.machine !== null && app._mounted")
+    page.select_option("[aria-label='Saved views']", name)
+
+
+def test_a_view_keeps_spectrum_xy_plot_and_cursors(look):
+    page = look("scope")
+    page.select_option(SPECTRUM, "x.set_velocity")
+    page.select_option(X, "x.set_velocity")
+    page.select_option(Y, "x.following_error")
+    for name, time in (("A", "0.1"), ("B", "0.3")):
+        page.fill(f"[data-cursor={name}]", time)
+        page.press(f"[data-cursor={name}]", "Enter")
+    page.fill("[aria-label='Name of the view']", "all")
+    page.click("button:text-is('Save')")
+    choose_view(page, "all")
+    page.wait_for_selector("[aria-label=Spectrum] .uplot")
+    page.wait_for_selector("[aria-label='One signal over another'] .uplot")
+    assert chosen(page) == ["x.set_velocity", "x.set_velocity", "x.following_error", "0.100", "0.300"]
+    page.wait_for_selector("text=B − A = 0.2 s")
+    page.select_option(X, "x.following_error")
+    page.wait_for_selector("[aria-label='One signal over another'] >> text=x.following_error over x.following_error")
+
+
+def test_a_view_of_an_older_version_and_one_written_by_hand_are_loaded(look):
+    page = look("scope")
+    older = '{"channels": [{"name": "y.set_velocity", "graph": 1}], "window": 5}'
+    odd = '{"channels": [{"name": "x.set_velocity"}], "window": 1, "spectrum": 7, "x": "q.gone", "cursors": {"A": "soon", "C": 1}}'
+    page.evaluate("views => localStorage.setItem('scope-views', views)", f'{{"older": {older}, "odd": {odd}}}')
+    choose_view(page, "odd")
+    page.wait_for_selector(".channels li >> text=x.set_velocity")
+    assert chosen(page) == ["", "", "", "", ""]
+    page.select_option(SPECTRUM, "x.set_velocity")
+    page.fill("[data-cursor=A]", "0.25")
+    page.press("[data-cursor=A]", "Enter")
+    page.select_option("[aria-label='Saved views']", "older")
+    page.wait_for_selector(".channels li >> text=y.set_velocity")
+    until(page, "document.querySelectorAll('.channels li').length === 1")
+    assert page.input_value("label:text-is('Window') + select") == "5"
+    assert chosen(page) == ["", "", "", "0.250", ""]  # it says nothing of cursors; its signals have no x
+
+
+def test_export_has_every_cycle_of_the_frozen_window(look, fake):
     page = look("scope")
     until(page, f"{SAMPLES} > 2500")
     page.click("button:text-is('Freeze')")
+    frozen = fake.cycle
+    eventually(page, lambda: fake.cycle > frozen + 1000)
     with page.expect_download() as download:
         page.click("text=Export CSV")
     lines = Path(download.value.path()).read_text(encoding="utf-8").splitlines()
     assert lines[0] == "cycle,time,x.set_velocity,x.following_error"
     cycles = [int(line.split(",")[0]) for line in lines[1:]]
     assert cycles == [*range(cycles[0], cycles[0] + len(cycles))]
-    assert len(cycles) >= 1900
+    assert len(cycles) >= 1900 and cycles[-1] < frozen + 200
     value = float(lines[1].split(",")[2])
     assert abs(value - 10 * math.sin(2 * math.pi * 2 * cycles[0] / 1000)) < 1e-12  # not rounded to 32 bits
 

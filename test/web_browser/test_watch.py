@@ -64,6 +64,21 @@ def test_an_older_path_does_not_overwrite_a_newer_one_and_an_error_leaves_none(l
     page.complaints.texts.clear()  # the browser logs the refusal 404
 
 
+def test_a_path_is_drawn_again_when_zero_offsets_change_once_for_many_changes(look, server, fake):
+    page = look("watch")
+    page.wait_for_selector("text=2,999 segments")
+    drawn, fake.points = fake.drawn, 100
+    told = {"type": "zero_offsets", "axes": ["X", "Y", "Z"], "offsets": []}
+    server.do(fake.tell({**told, "channel": "another"}))
+    page.wait_for_timeout(1300)
+    assert fake.drawn == drawn
+    for _ in range(5):
+        server.do(fake.tell({**told, "channel": "channel"}))
+    page.wait_for_selector("text=/^99 segments/")
+    page.wait_for_timeout(1300)
+    assert fake.drawn <= drawn + 2  # of the first, and of the others together
+
+
 def test_paths_are_broken_where_a_point_has_no_place(look):
     page = look("alarms")
     found = page.evaluate(

@@ -124,12 +124,12 @@ def eventually(page: Any, condition: Callable[[], Any]) -> None:
 def open_page(
     browser: Any, url: str, *, size: dict[str, int] | None = None, scheme: str = "light", command: bool = False
 ) -> Any:
-    """A page that is connected; `command`: it holds the command."""
+    """A page that is connected and shows its elements, whose modules come later; `command`: it holds the command."""
     page = browser.new_page(viewport=size or DESKTOP, color_scheme=scheme)
     page.set_default_timeout(PATIENCE)
     page.complaints = Complaints(page)
     page.goto(url)
-    until(page, "window.app && app.store.link === 'open' && app.store.machine !== null")
+    until(page, "window.app && app.store.link === 'open' && app.store.machine !== null && app._mounted")
     if command:
         page.click("text=Take command")
         until(page, "app.store.holds")

@@ -8,6 +8,7 @@ import select
 import socket
 import sys
 from collections.abc import Callable
+from functools import cache
 
 from cnc_ptp.nodes.forked import end_with
 from cnc_ptp.ros_arguments import ros_arguments
@@ -45,7 +46,7 @@ def web(
         end_with(sys.stdin.fileno())
         if select.select([sys.stdin], [], [], 0.0)[0]:
             return 0  # the run has ended before the signal was ordered
-    asyncio.run(serve(connector(recording), options, taken, tell=print_address))
+    asyncio.run(serve(connector(recording), options, taken, words=words_of, tell=print_address))
     return 0
 
 
@@ -60,6 +61,17 @@ def connector(recording: str | None) -> Callable[[], Face]:
 
     namespace = ros_arguments().namespace
     return lambda: live_face(namespace=namespace)
+
+
+@cache
+def words_of(dialect: str) -> list[tuple[str, str]]:
+    """Codes and commands of a vocabulary, each with its meaning, without those that are not built yet."""
+    from cnc_ptp.commands.language.words import entries
+
+    kinds = ("G function", "M function", "command")
+    return [
+        (entry.name, entry.explanation.meaning) for entry in entries(dialect) if entry.kind in kinds and not entry.later
+    ]
 
 
 def print_address(address: str) -> None:

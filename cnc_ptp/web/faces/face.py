@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from cnc_ptp.client.faults import unknown_unit
 from cnc_ptp.client.link import Reply
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import ParameterSet
@@ -51,7 +52,14 @@ class Face(ABC):
     """Seconds."""
     sets: Mapping[str, ParameterSet]
     """Parameters of the units, without the plc."""
+    machine_set: ParameterSet
+    """Those of the machine itself, which the plc has."""
     is_recording = False
+
+    def require_kind(self, unit: str, kind: str) -> None:
+        """Raises CncError 26111 where there is no such unit."""
+        if self.kinds.get(unit) != kind:
+            raise unknown_unit(unit, [name for name, other in self.kinds.items() if other == kind], kind)
 
     @abstractmethod
     def machine(self) -> dict[str, Any]:
@@ -78,8 +86,11 @@ class Face(ABC):
     async def ask(self, unit: str, command: str, arguments: Mapping[str, Any], *, user: str) -> Reply:
         """Gives a command. Raises the refusal of the unit, and CncError 22001, 22002, 26111, 26136, 26171, 26261."""
 
-    async def snapshot(self, file: str, seconds: float) -> None:
-        """The recorder writes its last seconds into a file; 0: all. Raises its refusal, CncError 26136, 26258."""
+    async def snapshot(self, file: str, seconds: float) -> int:
+        """The recorder writes its last seconds into a file, 0: all; the first cycle that it has.
+
+        Raises its refusal, CncError 26136, 26258.
+        """
         effect = "nothing was written; run with --keep SECONDS"
         raise CncError(NO_SNAPSHOT, "snapshot: there is no recorder", effect)
 

@@ -131,10 +131,11 @@ class LiveFace(MachineFace):
     def programs(self) -> Mapping[str, Mapping[str, Any]]:
         return self._graph.programs
 
-    async def snapshot(self, file: str, seconds: float) -> None:
+    async def snapshot(self, file: str, seconds: float) -> int:
         response = await asyncio.wrap_future(self._graph.snapshot(file, seconds))
         if not response.accepted:
             raise error_of(response.error_id, response.message, read_values(response.values_json))
+        return int(response.cycle)
 
     def news(self) -> News:
         news = super().news()

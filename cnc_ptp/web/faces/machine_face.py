@@ -52,7 +52,8 @@ class MachineFace(Face):
         self.sets: dict[str, ParameterSet] = {
             unit: self._link.parameters_of(unit) for unit, kind in self.kinds.items() if kind != "plc"
         }
-        self._closed = closed_units(self._link.parameters_of(PLC), self.kinds)
+        self.machine_set = self._link.parameters_of(PLC)
+        self._closed = closed_units(self.machine_set, self.kinds)
         self._units = describe_units(self.kinds, self.sets, self.cycle_time)
 
     def machine(self) -> dict[str, Any]:

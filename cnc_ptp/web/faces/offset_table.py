@@ -8,55 +8,83 @@ from pathlib import Path
 from typing import Any
 
 from cnc_ptp.parameters import ParameterSet
+from cnc_ptp.parameters.view.axis_view import is_facing
 from cnc_ptp.parameters.view.channel_view import channel_view
 from cnc_ptp.protocol.blocks import ChannelOffsets, CommandRecord
 
 FIRST_CODE = 53
 """Index 1 is G54."""
 LAST_CODE = 59
+Rows = Mapping[int, Mapping[str, float]]
+"""Index -> name of an axis in programs -> its offset in mm (deg); of a facing axis a diameter with P-CHAN-00091."""
 
 
 class OffsetTable:
-    """By index and axis, in mm (deg). None: it was taught, and is not known before it is active."""
+    """By index and axis, in mm (deg), as they are at the start of the next program."""
 
     def __init__(self, channel: ParameterSet, sets: Mapping[str, ParameterSet]) -> None:
         view = channel_view(channel, sets, Path())
         tables = view.offsets
-        self._axes = [axis.name for axis in view.axes]
+        self._units = {axis.name: axis.node for axis in view.axes}
+        doubled = [axis.name for axis in view.axes if view.offsets_in_diameters and is_facing(sets[axis.node])]
+        self._factors = dict.fromkeys(doubled, 2.0)
+        """That make a radius what the table has."""
         self._names = dict(tables.names)
         self._given = tables.zero
         self.begin_again()
+        self._told = self.shown()
 
     def begin_again(self) -> None:
         """As the parameters have them."""
-        self._values: dict[int, dict[str, float | None]] = {
-            index: dict(zip(self._axes, values, strict=False)) for index, values in self._given.items()
-        }
+        self._values = {index: dict(zip(self._units, values, strict=False)) for index, values in self._given.items()}
+        self._below: dict[str, float] = {}
+        """What clamp position and tool add to an axis."""
 
-    def take_record(self, record: CommandRecord) -> None:
-        """A command that has changed an offset."""
+    @property
+    def rows(self) -> Rows:
+        return {index: dict(row) for index, row in self._values.items()}
+
+    def take_record(self, record: CommandRecord, state: Mapping[str, Mapping[str, Any]]) -> None:
+        """A command that has changed an offset; `state` of the units: their channel stood."""
         if not record.accepted or record.command not in ("set_zero_offset", "teach_zero_offset"):
             return
         given = json.loads(record.arguments_json)
-        row = self._values.setdefault(given["index"], dict.fromkeys(self._axes, 0.0))
-        taught = record.command == "teach_zero_offset"
-        for axis in [given["axis"]] if given.get("axis") else self._axes:
-            name = next((each for each in self._axes if each.upper() == axis.upper()), axis)
-            row[name] = None if taught else given["value"]
+        row = self._values.setdefault(given["index"], dict.fromkeys(self._units, 0.0))
+        value = given.get("value", 0.0)
+        for axis in [given["axis"]] if given.get("axis") else self._units:
+            name = next((each for each in self._units if each.upper() == axis.upper()), axis)
+            row[name] = value if record.command == "set_zero_offset" else self._taught(name, value, state)
+
+    def _taught(self, name: str, value: float, state: Mapping[str, Mapping[str, Any]]) -> float:
+        """With which the present position is `value`."""
+        position: float = state[self._units[name]]["set_position"]
+        return (position - self._below.get(name, 0.0) - value) * self._factors.get(name, 1.0)
 
     def take_active(self, offsets: ChannelOffsets) -> None:
         """What is active now."""
+        below = [clamp + tool for clamp, tool in zip(offsets.clamp_offset, offsets.tool_offset, strict=True)]
+        self._below = dict(zip(offsets.axes, below, strict=True))
         if offsets.zero_index:
             row = self._values.setdefault(offsets.zero_index, {})
-            row.update(zip(offsets.axes, offsets.zero_offset, strict=False))
+            for name, value in zip(offsets.axes, offsets.zero_offset, strict=False):
+                if name in self._units:  # not the C axis, which is a spindle
+                    row[name] = value * self._factors.get(name, 1.0)
+
+    def news(self) -> dict[str, Any] | None:
+        """As `shown`, when it has changed since the last call."""
+        shown = self.shown()
+        if shown == self._told:
+            return None
+        self._told = shown
+        return shown
 
     def shown(self) -> dict[str, Any]:
         """As `offsets` is answered."""
         rows = [
-            {"index": index, "name": self._names.get(index, code_of(index)), "values": self._values[index]}
+            {"index": index, "name": self._names.get(index, code_of(index)), "values": dict(self._values[index])}
             for index in sorted(self._values)
         ]
-        return {"axes": self._axes, "offsets": rows}
+        return {"axes": [*self._units], "offsets": rows}
 
 
 def code_of(index: int) -> str:

@@ -41,6 +41,7 @@ class RecordedFace(Face):
         self._faces = faces
         faces.append(self)
         self.kinds, self.sets, self.cycle_time, self.end = file.kinds, file.sets, file.cycle_time, file.end
+        self.machine_set = file.parameters.sets["machine"]
         self._windows: dict[int, Window] = {0: file.first}
         self._time = self._told = 0.0
         self._speed = 0.0
@@ -199,7 +200,7 @@ class RecordedFace(Face):
     async def ask(self, unit: str, command: str, arguments: Mapping[str, Any], *, user: str) -> Reply:
         raise is_recording(f"{unit}: {command}")
 
-    async def snapshot(self, file: str, seconds: float) -> None:
+    async def snapshot(self, file: str, seconds: float) -> int:
         raise is_recording("snapshot")
 
     def jog(self, axis: str, velocity: float, *, user: str) -> None:

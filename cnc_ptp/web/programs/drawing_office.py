@@ -71,9 +71,9 @@ class DrawingOffice:
     async def draw(self, drawing: Drawing, *, replaces: bool = True) -> bytes:
         """As backplot.draw. Raises CncError 26253 where that is not possible.
 
-        `replaces`: the channel has this program now; what is drawn of another one of it ends.
+        `replaces`: the channel has this program and these offsets now; what is drawn of others ends.
         """
-        key = (drawing.channel, drawing.file, drawing.text, str(drawing.files))
+        key = (drawing.channel, drawing.file, drawing.text, str(drawing.files), str(drawing.offsets))
         if key not in self._orders:
             if replaces:
                 self._cancel(drawing.channel)
@@ -90,7 +90,7 @@ class DrawingOffice:
                 del self._orders[key]
             raise
         if order.is_superseded:
-            reason = f"backplot of {drawing.file}: the channel has another program"
+            reason = f"backplot of {drawing.file}: the channel has another program, or other offsets"
             raise CncError(NOT_DRAWN, reason, NOTHING_SHOWN)
         return drawn
 

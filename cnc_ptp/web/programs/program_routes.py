@@ -6,7 +6,6 @@ import asyncio
 
 from aiohttp import web
 
-from cnc_ptp.client.faults import unknown_unit
 from cnc_ptp.errors import CncError
 from cnc_ptp.web.access.access import Access
 from cnc_ptp.web.access.guard import refuse
@@ -18,6 +17,7 @@ from cnc_ptp.web.numbers import NO_COMMAND_RIGHT, PROGRAM_EXISTS, TOO_LARGE, TOO
 from cnc_ptp.web.programs.backplot import Drawing
 from cnc_ptp.web.programs.programs import SUFFIXES, require_name
 from cnc_ptp.web.rate import Rate
+from cnc_ptp.web.view import View
 
 PLAIN = "text/plain"
 MOST_UPLOADS = 4
@@ -92,26 +92,34 @@ class ProgramRoutes:
         self._access.login_of(request)
         face = self._hub.require_face()
         channel = request.query.get("channel", "channel")
-        if face.kinds.get(channel) != "channel":
-            raise unknown_unit(channel, [unit for unit, kind in face.kinds.items() if kind == "channel"], "channel")
+        face.require_kind(channel, "channel")
         if not self._drawings.permits():
             raise CncError(TOO_MANY_MESSAGES, "backplot: too many requests in a short time", "nothing was read; wait")
         load = await asyncio.to_thread(self._programs(request).loaded_text, channel)
         files = load.files if load.files or face.is_recording else None
-        drawing = Drawing(channel, face.kinds, face.sets, face.cycle_time, load.text or "", load.path, files=files)
+        view = self._view(request)
+        offsets = view.tables[channel].rows if view is not None else {}
+        drawing = Drawing(
+            channel, face.kinds, face.sets, face.cycle_time, load.text or "", load.path, files=files, offsets=offsets
+        )
         points = await self._hub.office.draw(drawing, replaces=not face.is_recording)
         headers = {"Cache-Control": "no-store"}
         response = web.Response(body=points, content_type="application/octet-stream", headers=headers)
         response.enable_compression()
         return response
 
-    def _programs(self, request: web.Request) -> ProgramWatch:
-        """Those of the page `?page=N`: of a recording, each is at another time. Without it the last ones."""
+    def _view(self, request: web.Request) -> View | None:
+        """That of the page `?page=N`: of a recording, each is at another time; a recording has none without it."""
         number = request.query.get("page", "")
         for session in self._hub.sessions:
             if str(session.number) == number and session.view is not None:
-                return session.view.programs
-        return self._hub.programs
+                return session.view
+        return self._hub.shared
+
+    def _programs(self, request: web.Request) -> ProgramWatch:
+        """Those of its page; without one the last ones."""
+        view = self._view(request)
+        return self._hub.programs if view is None else view.programs
 
     async def _content(self, request: web.Request) -> bytes:
         """Refused as soon as it is known to be too large."""

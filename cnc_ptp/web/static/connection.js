@@ -135,7 +135,7 @@ export class Connection {
     return this.request("command", { unit, command, arguments: args });
   }
 
-  /** A request of HTTP; JSON, text or bytes. Rejects with a Refusal. */
+  /** A request of HTTP: JSON, text, bytes, or the response itself. Rejects with a Refusal. */
   async http(path, { as = "json", ...options } = {}) {
     let response;
     try {
@@ -144,7 +144,7 @@ export class Connection {
       throw new Refusal({ text: "there is no connection to the server" });
     }
     if (!response.ok) throw new Refusal(await refusalOf(response));
-    return { json: () => response.json(), text: () => response.text(), bytes: () => response.arrayBuffer() }[as]();
+    return { json: () => response.json(), text: () => response.text(), bytes: () => response.arrayBuffer(), response: () => response }[as]();
   }
 }
 

@@ -1,4 +1,4 @@
-// The curve of a spindle: the acceleration that each of its gears gives over the speed, with its points.
+// The curve of a spindle: the acceleration that each of its gears gives over the speed, with its break points.
 import { h, panel, say } from "../dom.js";
 import { short } from "../format.js";
 import { CurveGraph, host } from "../scope/graphs.js";
@@ -21,8 +21,10 @@ export function spindleCurve(app, unit) {
     for (const gear of gears) {
       const place = host(`Curve of gear ${gear.gear}`);
       element.append(panel(`Gear ${gear.gear}: ${gear.kind}`, place, table(gear)));
-      const graph = new CurveGraph(place, ["acceleration"], { height: 280, xLabel: "rpm", yLabel: "°/s²", xName: "Speed" });
-      graph.draw([gear.points.map(({ speed }) => speed), gear.points.map(({ acceleration }) => acceleration)]);
+      const dots = gear.points.some((point) => point.break) ? "break points" : "";
+      const graph = new CurveGraph(place, ["acceleration"], { height: 280, xLabel: "rpm", yLabel: "°/s²", xName: "Speed", dots });
+      const columns = [gear.points.map(({ speed }) => speed), gear.points.map(({ acceleration }) => acceleration)];
+      graph.draw(dots ? [...columns, gear.points.map((point) => (point.break ? point.acceleration : null))] : columns);
       graphs.push(graph);
     }
   }
@@ -32,11 +34,11 @@ export function spindleCurve(app, unit) {
 
 const MOST_ROWS = 12;
 
-/** So many of the points. */
+/** The break points, and so many of the others. */
 function table({ gear, points }) {
   const step = Math.ceil(points.length / MOST_ROWS);
-  const shown = points.filter((_, i) => i % step === 0 || i === points.length - 1);
-  const rows = shown.map(({ speed, acceleration }) => h("tr", {}, [speed, acceleration].map((value) => h("td", { class: "number" }, short(value)))));
-  const head = h("thead", {}, h("tr", {}, ["Speed in rpm", "Acceleration in °/s²"].map((title) => h("th", { scope: "col" }, title))));
+  const shown = points.filter((point, i) => point.break || i % step === 0 || i === points.length - 1);
+  const rows = shown.map((point) => h("tr", {}, [point.speed, point.acceleration].map((value) => h("td", { class: "number" }, short(value, 7))), h("td", {}, point.break ? "break point" : "")));
+  const head = h("thead", {}, h("tr", {}, ["Speed in rpm", "Acceleration in °/s²", "Kind"].map((title) => h("th", { scope: "col" }, title))));
   return h("details", {}, h("summary", {}, `Points of gear ${gear}`), h("table", {}, head, h("tbody", {}, rows)));
 }

@@ -1,8 +1,8 @@
 // Manual data input, with history (arrow keys) and completion (Tab).
 import { h, newId, panel } from "../dom.js";
+import { unitSign } from "../format.js";
 
 const [KEY, KEPT, OFFERED] = ["mdi", 100, 8];
-const WORDS = ["G0", "G1", "G2", "G3", "G4", "G17", "G18", "G19", "G40", "G41", "G42", "G53", "G54", "G55", "G56", "G57", "G58", "G59", "G74", "G90", "G91", "G94", "G95", "G96", "G97", "M3", "M4", "M5", "M6", "M7", "M8", "M9", "M19", "M30", "#SET", "#CS ON", "#CS OFF", "#HSC", "#TRAFO"];
 
 export function mdi(app) {
   let history = read();
@@ -11,6 +11,8 @@ export function mdi(app) {
   const input = h("input", { class: "mdi number", autocomplete: "off", spellcheck: "false", role: "combobox", "aria-autocomplete": "list", "aria-expanded": "false", "aria-controls": offers.id, "aria-label": "NC text to execute", placeholder: "G0 X10" });
   const form = h("form", { class: "row" }, input, h("button", { type: "submit" }, "Execute"));
   const element = panel(app.store.ofChannel("MDI"), h("fieldset", { class: "commands" }, form, offers));
+  let words = axisWords(app.store);
+  input.addEventListener("focus", async () => (words = [...words, ...(await ofLanguage(app))]), { once: true });
 
   form.addEventListener("submit", async (event) => {
     event.preventDefault();
@@ -33,14 +35,14 @@ export function mdi(app) {
       input.value = history[place] ?? "";
       event.preventDefault();
     } else if (event.key === "Tab" && !offers.hidden) {
-      take(offers.firstChild.textContent);
+      take(offers.firstChild.dataset.text);
       event.preventDefault();
     } else if (event.key === "Escape") close();
   });
 
   function offer() {
-    const found = completions(input.value, history);
-    offers.replaceChildren(...found.map((text) => h("li", { role: "option", "aria-selected": "false", onpointerdown: (event) => (event.preventDefault(), take(text)) }, text)));
+    const found = completions(input.value, history, words);
+    offers.replaceChildren(...found.map(({ text, meaning }) => h("li", { role: "option", "aria-selected": "false", dataset: { text }, onpointerdown: (event) => (event.preventDefault(), take(text)) }, text, h("small", { class: "muted" }, meaning))));
     offers.hidden = found.length === 0;
     input.setAttribute("aria-expanded", String(!offers.hidden));
   }
@@ -58,15 +60,31 @@ export function mdi(app) {
   return { element };
 }
 
-/** Whole lines of the history that begin so, and words that the last one may become. */
-export function completions(text, history) {
+/** The axes of the channel by their names in programs. */
+function axisWords(store) {
+  return (store.unit(store.channel)?.axes || []).map(({ unit, name }) => ({ name, meaning: `axis ${unit}, ${unitSign(store.unit(unit)?.unit)}` }));
+}
+
+/** Codes and commands that the channel knows; none where the server cannot say. */
+async function ofLanguage(app) {
+  const answer = await app.attempt(app.connection.http(`/api/words?channel=${encodeURIComponent(app.store.channel)}`));
+  return answer?.words || [];
+}
+
+/** Whole lines of the history that begin so, and `words` that the last one may become: text and meaning of each. */
+export function completions(text, history, words) {
   if (!text) return [];
   const upper = text.toUpperCase();
   const lines = [...history].reverse().filter((line) => line.toUpperCase().startsWith(upper) && line.length > text.length);
-  const begin = text.lastIndexOf(" ") + 1;
-  const word = upper.slice(begin);
-  const words = word ? WORDS.filter((one) => one.startsWith(word) && one !== word).map((one) => text.slice(0, begin) + one) : [];
-  return [...new Set([...lines, ...words])].slice(0, OFFERED);
+  const begins = new Set([text.lastIndexOf("#"), text.lastIndexOf(" ") + 1].filter((begin) => begin >= 0)); // commands have blanks
+  const found = [...begins].flatMap((begin) => thatBegin(upper.slice(begin), words).map(({ name, meaning }) => ({ text: text.slice(0, begin) + name, meaning })));
+  return [...lines.map((line) => ({ text: line, meaning: "" })), ...found].slice(0, OFFERED);
+}
+
+/** G1 is G01; G0 may become G09. */
+function thatBegin(word, words) {
+  const plain = (name) => name.replace(/^([GM])0(?=\d)/, "$1");
+  return word ? words.filter(({ name }) => name.startsWith(word) || plain(name).startsWith(word)) : [];
 }
 
 function read() {

@@ -2,40 +2,33 @@
 import { button, h, panel, say } from "../dom.js";
 import { fixed } from "../format.js";
 
-const SETTLED = 300; // ms until the server knows of an accepted command
 const NAMES = ["G54", "G55", "G56", "G57", "G58", "G59"];
 
 export function offsets(app) {
   const { store } = app;
   const axes = store.unit(store.channel)?.axes?.map((axis) => axis.name ?? axis) || store.of("axis").map((axis) => axis.name.toUpperCase());
-  const rows = NAMES.map((name, i) => row(app, i + 1, name, axes, () => setTimeout(read, SETTLED)));
+  const rows = NAMES.map((name, i) => row(app, i + 1, name, axes));
   const head = h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Offset"), axes.map((axis) => h("th", { scope: "col" }, axis)), h("th", { scope: "col" }, "Teach")));
   const table = h("table", { class: "offsets" }, head, h("tbody", {}, rows.map((one) => one.element)));
   const active = h("p", { class: "muted" });
   const element = panel(store.ofChannel("Zero offsets"), active, h("fieldset", { class: "commands" }, h("div", { class: "scroll" }, table)));
 
-  /** Taught values are not known before their offset was active. */
-  async function read() {
-    if (!store.channel) return;
-    const answer = await app.request("offsets", { channel: store.channel });
-    for (const { index, values } of answer?.offsets || []) rows[index - 1]?.fill(values);
-  }
+  const fill = (table) => {
+    for (const { index, values } of table?.offsets || []) rows[index - 1]?.fill(values);
+  };
   const update = () => {
     const now = store.offsets[store.channel];
     const name = now && (now.zero_name || NAMES[now.zero_index - 1] || "G53");
     say(active, now ? `Active: ${name}. A new value counts when the offset is selected next.` : "A value counts when the offset is selected next.");
     rows.forEach((one, i) => one.element.classList.toggle("active", now?.zero_index === i + 1));
   };
-  const changed = () => {
-    update();
-    read();
-  };
-  const ends = [store.on("offsets", changed)];
-  changed();
+  const ends = [store.on("offsets", update), store.on("zero_offsets", (table) => table.channel === store.channel && fill(table))];
+  update();
+  if (store.channel) app.request("offsets", { channel: store.channel }).then(fill);
   return { element, end: () => ends.forEach((end) => end()) };
 }
 
-function row(app, index, name, axes, changed) {
+function row(app, index, name, axes) {
   const cells = axes.map((axis) => h("input", { type: "number", step: "any", "aria-label": `${name} ${axis}`, dataset: { axis } }));
   const { channel } = app.store;
   for (const cell of cells) {
@@ -44,7 +37,7 @@ function row(app, index, name, axes, changed) {
       if (cell.value !== "" && (await app.command(channel, "set_zero_offset", { index, axis: cell.dataset.axis, value }))) app.notices.show("info", `${name} ${cell.dataset.axis} = ${fixed(value, 3)}`);
     });
   }
-  const teach = (axis) => app.command(channel, "teach_zero_offset", { index, ...(axis ? { axis } : {}), value: 0 }).then((answer) => answer && (changed(), true) && app.notices.show("info", `${name}: the present position is taught; it counts when ${name} is selected next.`));
+  const teach = (axis) => app.command(channel, "teach_zero_offset", { index, ...(axis ? { axis } : {}), value: 0 }).then((answer) => answer && app.notices.show("info", `${name}: the present position is taught; it counts when ${name} is selected next.`));
   const buttons = [button("all", () => teach(), { class: "small", "aria-label": `Teach ${name}, all axes` }), ...axes.map((axis) => button(axis, () => teach(axis), { class: "small", "aria-label": `Teach ${name} ${axis}` }))];
   return {
     element: h("tr", {}, h("th", { scope: "row" }, name), cells.map((cell) => h("td", {}, cell)), h("td", {}, h("div", { class: "row" }, buttons))),
@@ -52,8 +45,7 @@ function row(app, index, name, axes, changed) {
       for (const cell of cells) {
         const value = values[cell.dataset.axis];
         if (document.activeElement === cell || value === undefined) continue;
-        cell.value = value === null ? "" : Number(value.toFixed(6));
-        cell.placeholder = value === null ? "taught" : "";
+        cell.value = Number(value.toFixed(6));
       }
     },
   };

@@ -1,4 +1,4 @@
-// Commission: the pages of an axis, a spindle or a channel.
+// Commission: the pages of an axis, a spindle, a channel, or the machine.
 import { field, h, select, tabs } from "../dom.js";
 import { onlineAxis, onlineSpindle } from "../commission/online.js";
 import { commandForms } from "../commission/command_forms.js";
@@ -16,13 +16,13 @@ const AXIS = {
   Coupling: ["couple", "couple_gantry", "couple_cyclic", "couple_flying_saw", "couple_cam", "change_cam", "set_coupling_factor", "set_cyclic_factor", "decouple"],
   Compensation: ["compensation_start", "compensation_stop", "set_friction_compensation"],
 };
-const KINDS = { axis: "Axis", spindle: "Spindle", channel: "Channel" };
+const KINDS = { axis: "Axis", spindle: "Spindle", channel: "Channel", plc: "Machine" };
 
 export function mount(root, app) {
   const { store } = app;
-  const units = store.machine.units.filter((unit) => unit.kind in KINDS);
+  const units = [...store.machine.units];
   units.sort((a, b) => Object.keys(KINDS).indexOf(a.kind) - Object.keys(KINDS).indexOf(b.kind));
-  const choice = select(units.map(({ name, kind }) => [name, `${KINDS[kind]} ${name}`]));
+  const choice = select(units.map(({ name, kind }) => [name, kind === "plc" ? KINDS.plc : `${KINDS[kind]} ${name}`]));
   const body = h("div", {});
   let shown = null;
   function show() {
@@ -52,5 +52,6 @@ function pagesOf(app, unit) {
     return { Online: place(onlineAxis), "PTP test": place(ptpTest), ...functions, Identify: place(identifyView), "Circle test": (body) => followChannel(app, body, place(circleTest)), ...parameters, Drive: place(driveView) };
   }
   if (unit.kind === "spindle") return { Online: place(onlineSpindle), Functions: forms(known), Curve: place(spindleCurve), ...parameters };
+  if (unit.kind === "plc") return parameters; // the plc has those of the machine
   return { Functions: forms(known), ...parameters };
 }

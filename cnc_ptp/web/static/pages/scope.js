@@ -20,7 +20,7 @@ export function mount(root, app) {
     parts.forEach((part) => part.refresh?.());
     if (capture.isRecording) capture.read(Number(document.querySelector(".recording-bar input").value));
   };
-  const parts = [runPanel(app, capture, picture), channelPanel(app, capture, changed), triggerPanel(app, capture), viewPanel(app, capture, changed)];
+  const parts = [runPanel(app, capture, picture), channelPanel(app, capture, changed), triggerPanel(app, capture), viewPanel(app, capture, picture, changed)];
   root.append(h("div", { class: "graphs" }, picture.element), h("div", { class: "stack" }, parts.map((part) => part.element)));
   const ends = [app.store.on("hello", changed), app.store.on("seek", (time) => capture.read(time))];
   changed();

@@ -202,6 +202,12 @@ export class Capture {
     return shown.ring.at(index, Math.round(this._sampleAt(time, shown)));
   }
 
+  /** The first cycle of the picture. */
+  get begin() {
+    const { ring, from, step, shift } = this.shown();
+    return Math.max(from, ring.begin) * step + shift;
+  }
+
   /** First and last time (s) of the picture. */
   get range() {
     const shown = this.shown();

@@ -7,6 +7,7 @@ const LIGHT = ["#1f5fa8", "#b3261e", "#17653a", "#8a4b00", "#6a3aa8", "#00707a",
 const DARK = ["#7db8f0", "#ff9d94", "#7fd6a0", "#f0c36a", "#c3a5f5", "#6fd3dc", "#f59bc9", "#b8c2cc"];
 const SYNC = "scope";
 const GRIP = 0.5;
+const DOTS = { paths: () => null, points: { show: true, size: 9 } };
 
 export const isDark = () => document.documentElement.dataset.theme === "dark";
 export const colourOf = (index) => (isDark() ? DARK : LIGHT)[index % LIGHT.length];
@@ -98,13 +99,14 @@ export class TimeGraph {
   }
 }
 
-/** A curve or several over another quantity: spectra, curves of spindles. */
+/** A curve or several over another quantity: spectra, curves of spindles. `dots`: a last column that is drawn as points. */
 export class CurveGraph {
-  constructor(host, names, { height = 240, xLabel = "", yLabel = "", xName = xLabel } = {}) {
-    const series = names.map((label, i) => ({ label, stroke: colourOf(i), width: 1.4, points: { show: false }, value: (_, value) => short(value) }));
+  constructor(host, names, { height = 240, xLabel = "", yLabel = "", xName = xLabel, dots = "" } = {}) {
+    const columns = dots ? [...names, dots] : names;
+    const series = columns.map((label, i) => ({ label, stroke: colourOf(i), width: 1.4, points: { show: false }, value: (_, value) => short(value), ...(i === names.length && DOTS) }));
     this.plot = new uPlot(
       { width: Math.max(200, host.clientWidth), height, scales: { x: { time: false } }, axes: [axis(xLabel, { size: 44 }), axis(yLabel)], series: [{ label: xName, value: (_, value) => short(value) }, ...series] },
-      [[], ...names.map(() => [])], host,
+      [[], ...columns.map(() => [])], host,
     );
     this._observer = new ResizeObserver(() => this.plot.setSize({ width: Math.max(200, host.clientWidth), height }));
     this._observer.observe(host);

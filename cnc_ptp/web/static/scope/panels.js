@@ -1,11 +1,13 @@
 // The panels beside the graphs: run and freeze, channels, trigger, saved views.
 import { button, field, h, panel, press, say, select, toggle } from "../dom.js";
+import { fixed } from "../format.js";
 import { colourOf } from "./graphs.js";
 import { signalsOf } from "./catalogue.js";
 import { formula } from "./expression.js";
 import { csv, download, removeView, saveView, savedViews } from "./views.js";
 
 const WINDOWS = ["0.1", "0.2", "0.5", "1", "2", "5", "10", "20", "60"];
+const ON_THE_WAY = 1; // s that may pass until the recorder is asked
 const SLOPES = [["rising", "rising, above"], ["falling", "falling, below"], ["both", "both edges"]];
 
 export function runPanel(app, capture, picture) {
@@ -25,9 +27,18 @@ export function runPanel(app, capture, picture) {
     const state = capture.isFrozen ? "Frozen" : capture.mode === "off" ? "Running" : capture.trigger.cycle === null ? "Waiting for the trigger" : "Triggered";
     return say(status, `${state} · ${samplesOf(capture.shown())}`);
   }, 200);
+  /** From the begin of what is shown until now, whenever it was frozen. */
   const snapshot = async () => {
-    const bytes = await app.attempt(app.connection.http(`/api/snapshot.mcap?seconds=${Math.max(1, capture.window)}`, { as: "bytes" }));
-    if (bytes) download("snapshot.mcap", bytes, "application/octet-stream");
+    const { begin, cycleTime, held } = capture;
+    const seconds = Math.max(1, capture.window, held ? app.store.time - begin * cycleTime + ON_THE_WAY : 0);
+    const answer = await app.attempt(app.connection.http(`/api/snapshot.mcap?seconds=${Number(seconds.toFixed(3))}`, { as: "response" }));
+    if (!answer) return;
+    const first = Number(answer.headers.get("X-First-Cycle"));
+    download("snapshot.mcap", await answer.arrayBuffer(), "application/octet-stream");
+    const [from, shown] = [first, begin].map((cycle) => `${fixed(cycle * cycleTime, 3)} s`);
+    if (!held) return; // what runs has gone on meanwhile
+    if (first > begin) app.notices.show("warning", `The snapshot has ${from} until now; the picture begins at ${shown}, which the recorder no longer has.`);
+    else app.notices.show("info", `The snapshot has ${from} until now; the picture begins at ${shown}.`);
   };
   const element = panel(
     "Scope", h("div", { class: "row end" }, field("Window", length), freeze, unzoom), status,
@@ -125,14 +136,14 @@ export function triggerPanel(app, capture) {
   return { element, refresh };
 }
 
-export function viewPanel(app, capture, changed) {
+export function viewPanel(app, capture, picture, changed) {
   const names = select([["", "Saved views …"]], { "aria-label": "Saved views" });
   const name = h("input", { placeholder: "Name", "aria-label": "Name of the view" });
   const fill = () => names.replaceChildren(h("option", { value: "" }, "Saved views …"), ...[...savedViews().keys()].map((one) => h("option", { value: one }, one)));
   const save = () => {
     if (!name.value.trim()) return;
     const { kind, direction, level, text } = capture.trigger;
-    saveView(name.value.trim(), { channels: capture.channels, window: capture.window, pre: capture.pre, mode: capture.mode, source: capture.source, trigger: { kind, direction, level, text } });
+    saveView(name.value.trim(), { channels: capture.channels, window: capture.window, pre: capture.pre, mode: capture.mode, source: capture.source, trigger: { kind, direction, level, text }, ...picture.extras });
     fill();
   };
   names.addEventListener("change", async () => {
@@ -142,6 +153,7 @@ export function viewPanel(app, capture, changed) {
     Object.assign(capture, { channels: view.channels.map((channel) => ({ ...channel })), window: view.window, pre: view.pre ?? 0.2, mode: capture.isRecording ? "off" : view.mode || "off", source: view.source || "" });
     capture.arm(view.trigger || {});
     await changed();
+    picture.show(view);
   });
   const remove = button("Remove", () => (removeView(name.value.trim()), fill()));
   fill();

@@ -80,16 +80,39 @@ export class Picture {
 
   _fillChoices() {
     const names = this.capture.channels.map(({ name }) => name);
-    for (const choice of [this._fft?.which, this._xy?.x, this._xy?.y].filter(Boolean)) {
+    for (const choice of this._choices) {
       const { value } = choice;
       choice.replaceChildren(h("option", { value: "" }, "off"), ...names.map((name) => h("option", { value: name }, name)));
-      choice.value = names.includes(value) ? value : "";
-      choice.onchange = () => (this._seen = -1);
+      choice.onchange = () => this._chosen();
+      pick(choice, value);
     }
+    this._chosen();
+  }
+
+  /** Graphs of signals that are chosen are made anew with the next drawing. */
+  _chosen() {
     for (const part of [this._fft, this._xy]) {
       part?.graph?.end();
       if (part) part.graph = null;
     }
+    this._seen = -1;
+  }
+
+  get _choices() {
+    return [this._fft?.which, this._xy?.x, this._xy?.y].filter(Boolean);
+  }
+
+  /** What is shown besides the channels: the signals of the spectrum and of the XY plot, the cursors. */
+  get extras() {
+    const [spectrum, x, y] = this._choices.map((choice) => choice.value);
+    return { spectrum, x, y, cursors: { ...this.cursors } };
+  }
+
+  /** Shows it again, as far as it is given. */
+  show({ spectrum, x, y, cursors }) {
+    [spectrum, x, y].forEach((name, i) => name !== undefined && pick(this._choices[i], name));
+    for (const [name, time] of Object.entries(cursors || {})) if (name in this.cursors) this.setCursor(name, Number.isFinite(time) ? time : null);
+    this._chosen();
   }
 
   draw() {
@@ -153,6 +176,12 @@ export class Picture {
     this._fft?.graph?.end();
     this._xy?.graph?.end();
   }
+}
+
+/** Chooses a row; the first one where there is none of this value. */
+function pick(choice, value) {
+  choice.value = value;
+  if (choice.selectedIndex < 0) choice.selectedIndex = 0;
 }
 
 function fillTable(body, rows) {

@@ -7,6 +7,7 @@ import { colours, geometry, pointsUpTo, readPath, scaleColour } from "./toolpath
 
 const TURN = 10; // degrees of a key
 const NO_PROGRAM = 26242;
+const PAUSE = 1000; // ms between two drawings of a program whose zero offsets change again and again
 const CUT_OFF = 2; // flag: the program goes on
 
 export function backplot(app) {
@@ -31,9 +32,11 @@ export function backplot(app) {
   }
 
   let loading = 0; // a later answer is not overwritten by an earlier one
+  let [isOld, next] = [false, Infinity]; // the zero offsets have changed; when it may be drawn again for that
 
-  async function load() {
+  async function load(keepsView = false) {
     const number = ++loading;
+    [isOld, next] = [false, Infinity];
     const begin = performance.now();
     say(status, "The server draws the program …");
     let drawn;
@@ -42,16 +45,18 @@ export function backplot(app) {
       drawn = readPath(bytes);
     } catch (error) {
       if (number !== loading) return;
+      next = performance.now() + PAUSE;
       clear();
       say(status, error.number === NO_PROGRAM ? "No program is loaded." : error.message);
       return;
     }
     if (number !== loading) return;
+    next = performance.now() + PAUSE;
     path = drawn;
     const shape = geometry(path);
     pairs = shape.pairs;
-    scene.setPath(shape.positions, pairs, colour(), shape.box);
-    if (path.isTurning) turn("turning");
+    scene.setPath(shape.positions, pairs, colour(), shape.box, keepsView);
+    if (path.isTurning && !keepsView) turn("turning");
     scene.drawNow();
     element.dataset.ms = Math.round(performance.now() - begin);
     say(status, `${path.flags & CUT_OFF ? "Not to its end: " : ""}${(pairs.length / 2).toLocaleString("en")} segments · ${[0, 1, 2].map((k) => `${"XYZ"[k]} ${fixed(shape.box.min[k], 1)} … ${fixed(shape.box.max[k], 1)}`).join(" · ")} mm`);
@@ -93,8 +98,9 @@ export function backplot(app) {
   function update() {
     const axes = placesOf(store);
     scene.setTool(...axes);
-    if (!path) return;
     const { line, active } = store.state(store.channel);
+    if (isOld && performance.now() > next) load(active);
+    if (!path) return;
     const only = done.getAttribute("aria-pressed") === "true" && active;
     scene.setShown(only ? Math.min(pairs.length / 2, pointsUpTo(path, line)) : pairs.length / 2);
   }
@@ -109,7 +115,7 @@ export function backplot(app) {
   });
   const theme = () => scene.setTheme();
   window.addEventListener("theme", theme);
-  const ends = [store.on("state", update), store.on("program", ({ channel }) => channel === store.channel && load()), () => window.removeEventListener("theme", theme), () => (loading += 1), () => scene.end()];
+  const ends = [store.on("state", update), store.on("program", ({ channel }) => channel === store.channel && load()), store.on("zero_offsets", ({ channel }) => (isOld ||= channel === store.channel)), () => window.removeEventListener("theme", theme), () => (loading += 1), () => scene.end()];
   element.scene = scene;
   load();
   update();

@@ -46,8 +46,8 @@ export class PathScene {
     this._place();
   }
 
-  /** Shows a path: its positions, pairs, colours and box. */
-  setPath(positions, pairs, colours, box) {
+  /** Shows a path: its positions, pairs, colours and box; `keepsView`: from where it is looked at now. */
+  setPath(positions, pairs, colours, box, keepsView = false) {
     for (const child of [...this._path.children]) child.geometry.dispose();
     this._path.clear();
     const shape = new BufferGeometry();
@@ -61,7 +61,8 @@ export class PathScene {
     lines.frustumCulled = false;
     this._path.add(lines);
     if (box.min[0] <= box.max[0]) this._box = box;
-    this.look(this._view);
+    if (keepsView) this._place();
+    else this.look(this._view);
   }
 
   /** Shows another path over it (x, y, z one after the other); null: none. */
