@@ -337,8 +337,6 @@ def test_mdi_has_a_history_and_completes(look, fake):
 def test_mdi_completes_what_the_channel_knows_and_says_what_it_means(look):
     page = look(command=True)
     field = page.locator("[aria-label='NC text to execute']")
-    field.focus()
-    page.wait_for_load_state("networkidle")
     field.press_sequentially("g5")
     page.wait_for_selector(".offers li:has-text('G54') >> text=Zero offset 1.")
     field.press("Tab")

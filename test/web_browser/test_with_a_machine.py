@@ -10,6 +10,7 @@ import pytest
 from web_browser_support import PATIENCE, PHONE, InThread, eventually, open_page, until
 from web_support import EXAMPLES, MILL, ROOT, waiting_mill
 
+from cnc_ptp.commands.run.web import words_of
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.web.access.access import Access
 from cnc_ptp.web.access.guard import Names
@@ -60,7 +61,7 @@ def tuned(browser, programs):
 def pages_of(browser, programs, machine):
     """Opens pages of an offline machine; `hub` and `server` are those of the pages."""
     hub = Hub(lambda: offline_face(machine), name="machine", folder=ProgramFolder(str(programs)), machine_file=machine)
-    with InThread(Server(hub, Access(None), Names()).app) as server:
+    with InThread(Server(hub, Access(None), Names(), words=words_of).app) as server:
         pages = []
 
         def open_one(name="operate", **options):
@@ -177,6 +178,16 @@ def test_manual_data_input_moves_and_a_refusal_is_shown(mill):
     page.wait_for_selector(".notice.error")
 
 
+def test_the_words_of_the_language_are_completed(mill):
+    page = mill()
+    field = page.locator("[aria-label='NC text to execute']")
+    field.fill("g54")
+    page.wait_for_selector(".offers li:has-text('G54') >> text=Zero offset 1")
+    field.fill("#hs")
+    field.press("Tab")
+    assert field.input_value() == "#HSC"
+
+
 def test_the_scope_triggers_on_a_motion(mill):
     page = mill("scope")
     page.wait_for_selector(".channels >> text=x.set_velocity")
@@ -291,11 +302,13 @@ def test_each_function_of_an_axis_has_its_form(mill):
 
 def test_a_taught_offset_and_the_curve_of_the_spindle(mill):
     page = mill()
+    page.evaluate("() => void app.command('x', 'move_absolute', { target: 1.5 })")
+    until(page, "app.store.units.x.set_position === 1.5 && app.store.units.x.state === 'Standstill'")
     page.locator("[aria-label='G55 X']").fill("7.5")
     page.locator("[aria-label='G55 X']").press("Enter")
     page.wait_for_selector(".notice >> text=G55 X = 7.500")
     page.click("[aria-label='Teach G56, all axes']")
-    until(page, "document.querySelector('[aria-label=\\'G56 X\\']').placeholder === 'taught'")
+    until(page, "document.querySelector('[aria-label=\\'G56 X\\']').value === '1.5'")
     page.keyboard.press("Alt+Digit4")
     page.select_option("label:text-is('Unit') + select", "s")
     page.click("[role=tab]:text-is('Curve')")

@@ -12,7 +12,7 @@ export function mdi(app) {
   const form = h("form", { class: "row" }, input, h("button", { type: "submit" }, "Execute"));
   const element = panel(app.store.ofChannel("MDI"), h("fieldset", { class: "commands" }, form, offers));
   let words = axisWords(app.store);
-  input.addEventListener("focus", async () => (words = [...words, ...(await ofLanguage(app))]), { once: true });
+  input.addEventListener("focus", learn, { once: true });
 
   form.addEventListener("submit", async (event) => {
     event.preventDefault();
@@ -39,6 +39,11 @@ export function mdi(app) {
       event.preventDefault();
     } else if (event.key === "Escape") close();
   });
+
+  async function learn() {
+    words = [...words, ...(await ofLanguage(app))];
+    offer(); // of what was typed meanwhile
+  }
 
   function offer() {
     const found = completions(input.value, history, words);
