@@ -17,7 +17,6 @@ import click
 from diagnostic_msgs.msg import DiagnosticArray
 from rcl_interfaces.msg import Log
 from rclpy.qos import qos_profile_rosout_default
-from rclpy.serialization import deserialize_message
 from rclpy.subscription import Subscription
 
 from cnc_ptp import msg
@@ -123,8 +122,6 @@ class RecorderNode(PollingNode):
         """First cycle of the newest tick."""
         self._recording: OnDemand | None = None
         self._early: list[Callable[[], None]] = []
-        self._texts: dict[str, str] = {}
-        """Long ones of checkpoints, by digest."""
         self._next_cycle = dict.fromkeys(self._units, 0)
         self._stopped: dict[str, int] = {}
         """The first cycle of units whose drives have stopped on their own."""
@@ -147,15 +144,16 @@ class RecorderNode(PollingNode):
         self.create_subscription(msg.Event, EVENT, self._guarded(self._on_event), EVENTS)
         self.create_subscription(msg.CommandRecord, COMMAND, self._guarded(self._on_command), EVENTS)
         for topic, message_type in ((DIAGNOSTICS, DiagnosticArray), (LATENESS, msg.LatenessHistogram)):
-            received = self._guarded(partial(self._on_stamped, topic, message_type))
+            received = self._readable(topic, partial(self._on_stamped, topic, message_type))
             self.create_subscription(message_type, topic, received, PLC_INPUT, raw=True)
-        self.create_subscription(msg.DriveStop, DRIVE_STOPS, self._guarded(self._on_drive_stop), EVENTS, raw=True)
-        received = self.readable(CHECKPOINTS, self._guarded(self._on_checkpoint))
+        received = self._readable(DRIVE_STOPS, self._on_drive_stop)
+        self.create_subscription(msg.DriveStop, DRIVE_STOPS, received, EVENTS, raw=True)
+        received = self._readable(CHECKPOINTS, self._on_checkpoint)
         self.create_subscription(msg.UnitCheckpoint, CHECKPOINTS, received, STATES_OF_UNITS, raw=True)
         for topic, message_type, quality in observed_topics(machine):
             received = self._guarded(partial(self._on_observed, recorded_topic(topic), type_name(message_type)))
             self.create_subscription(message_type, topic, received, quality, raw=True)
-        received = self._guarded(self._on_log)
+        received = self._readable(ROSOUT, self._on_log)
         self.create_subscription(Log, ROSOUT, received, qos_profile_rosout_default, raw=True)
         RecordingServices(self, lambda: self._recording)
         self._ready_timer = process.timer(self, process.READY_PERIOD, self._report_ready)
@@ -169,6 +167,9 @@ class RecorderNode(PollingNode):
 
     def _subscribe(self, message_type: Any, topic: str, received: Callable[[bytes], None]) -> Subscription[Any]:
         return self.poll(message_type, topic, self._guarded(received), BLOCKS)
+
+    def _readable(self, topic: str, received: Callable[[bytes], None]) -> Callable[[bytes], None]:
+        return self.readable(topic, self._guarded(received))
 
     def _guarded(self, callback: Callable[..., None]) -> Callable[..., None]:
         """The callback, whose CncError ends the node."""
@@ -300,22 +301,24 @@ class RecorderNode(PollingNode):
         self._single(lambda sink: sink.event(event))
 
     def _on_drive_stop(self, data: bytes) -> None:
-        message = deserialize_message(data, msg.DriveStop)
+        message = convert.message_of(data, msg.DriveStop)
         self._stopped[message.unit] = message.first_cycle
         self._on_stamped(DRIVE_STOPS, msg.DriveStop, data)
 
     def _on_checkpoint(self, data: bytes) -> None:
         """Raises CncError 26184 for one that no unit of the machine has sent."""
-        message = deserialize_message(data, msg.UnitCheckpoint)
+        message = convert.message_of(data, msg.UnitCheckpoint)
         try:
             texts = json.loads(message.texts_json)
-        except ValueError:
+        except (ValueError, RecursionError):
             texts = None
         if message.unit not in self._units or not isinstance(texts, list) or {*map(type, texts)} - {str}:
             raise unreadable("cnc_ptp/msg/UnitCheckpoint", data, "it is of no unit, or has no list of texts")
-        self._texts |= {digest_of(text): text for text in texts}
-        if self._recording is not None:
-            self._recording.unit_state(message.next_cycle, message.unit, message.state.tobytes(), self._texts)
+        if self._recording is None:
+            self._early.append(lambda: self._on_checkpoint(data))
+            return
+        self._recording.checkpoint_texts({digest_of(text): text for text in texts})
+        self._recording.checkpoint(message.next_cycle, message.state.tobytes(), message.unit)
 
     def _on_command(self, message: msg.CommandRecord) -> None:
         command = convert.message_to_record(message)
@@ -323,7 +326,7 @@ class RecorderNode(PollingNode):
 
     def _on_stamped(self, topic: str, message_type: Any, data: bytes) -> None:
         """A message with a header that is recorded as it came."""
-        stamp_ns = convert.nanoseconds(deserialize_message(data, message_type).header.stamp)
+        stamp_ns = convert.nanoseconds(convert.message_of(data, message_type).header.stamp)
         self._single(lambda sink: sink.raw(recorded_topic(topic), type_name(message_type), data, stamp_ns))
 
     def _on_observed(self, topic: str, type_name: str, data: bytes) -> None:
@@ -333,7 +336,7 @@ class RecorderNode(PollingNode):
 
     def _on_log(self, data: bytes) -> None:
         """The topic is one for all namespaces; messages of nodes of other namespaces are left out."""
-        if _namespace(deserialize_message(data, Log).name) == _namespace(self.get_logger().name):
+        if _namespace(convert.message_of(data, Log).name) == _namespace(self.get_logger().name):
             self._on_observed(ROSOUT, type_name(Log), data)
 
     def _single(self, record: Callable[[Sink], None]) -> None:

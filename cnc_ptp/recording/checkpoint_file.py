@@ -19,8 +19,8 @@ from cnc_ptp.recording.checkpoints import Checkpoints
 from cnc_ptp.recording.computed_again import commands_by_cycle, computed_again, fresh_machine, no_progress
 from cnc_ptp.recording.difference import field_difference
 from cnc_ptp.recording.mcap_file import McapFile
+from cnc_ptp.recording.new_recording import in_place_of
 from cnc_ptp.recording.opened import OpenRecording
-from cnc_ptp.recording.overwriting import replacing
 from cnc_ptp.recording.run_difference import CYCLE, fields_of
 from cnc_ptp.recording.run_inputs import CHECKPOINTS_OF, RunInputs, checkpoint_file
 from cnc_ptp.recording.selection import NOT_RECORDED
@@ -43,12 +43,13 @@ def store_checkpoints(recorded: RunInputs, seconds: float, show: Callable[[Outpu
     """Computes the run and writes its state every so many seconds of machine time to the file beside the recording.
 
     At each of them the values of the recording are compared; `show` takes what was computed. Raises CncError 26007
-    and 26113 where the file cannot be written, 26155 (no machine file), 26210 for another result; then an older file
-    remains.
+    and 26113 where the file cannot be written, 26018 (not from 0), 26155 (no machine file), 26210 for another result;
+    then an older file remains.
     """
+    recorded.require_from_0()
     machine = recorded.required_machine()
     path = checkpoint_file(recorded.path)
-    with replacing(path) as new, OpenRecording(recorded.path) as states, CheckpointFile(new, recorded) as file:
+    with in_place_of(path) as new, OpenRecording(recorded.path) as states, CheckpointFile(new, recorded) as file:
         checkpoints = Checkpoints(file, machine, seconds)
         offline = fresh_machine(machine)
         for outputs in computed_again(offline, commands_by_cycle(recorded.commands, machine), recorded.end):

@@ -144,9 +144,10 @@ class RecordReader:
         """Raises CncError 26002 unless a file with this begin is an MCAP file."""
         if begin != MCAP0_MAGIC:
             text, magic = (content.decode(errors="replace") for content in (begin, MCAP0_MAGIC))
+            why = f"it begins with {text!r} instead of {magic!r}" if begin else "it is empty"
             raise CncError(
                 NOT_MCAP,
-                f"recording {self.path}: not an MCAP file: it begins with {text!r} instead of {magic!r}",
+                f"recording {self.path}: not an MCAP file: {why}",
                 "nothing was read, give a file that cnc_ptp or 'ros2 bag record --storage mcap' has written",
             )
 

@@ -17,6 +17,8 @@ MOST_BYTES = 256 * 2**20
 """Of the last seconds; the oldest are forgotten before more are kept."""
 MOST_COMMANDS = 64 * 2**20
 """Bytes of commands and events since the start of a run."""
+MOST_STATES = 64 * 2**20
+"""Bytes of checkpoints."""
 OBJECT = 400
 """Bytes of a command or an event that is not compressed, besides its texts."""
 BATCH = 256
@@ -26,6 +28,8 @@ LEVEL = 3
 EVENT, COMMAND = 0, 1
 TICK, BLOCK, RAW = "tick", "encoded_block", "raw"
 """Methods of Recording."""
+StatesOfUnits = dict[str, bytes]
+"""By unit; that of all units together has no name."""
 
 
 class Item(NamedTuple):
@@ -55,6 +59,11 @@ class LastSeconds:
         while self._items and (self._items[0].cycle < oldest or self._size > self._most):
             self._size -= self._items.popleft().size
 
+    @property
+    def oldest(self) -> int:
+        """The cycle of the oldest item, 0 without any."""
+        return self._items[0].cycle if self._items else 0
+
     def first_whole(self, units: Iterable[str]) -> int | None:
         """The first cycle of which a block of every unit is kept; None if there is none."""
         first: dict[str, int] = {}
@@ -70,6 +79,40 @@ class LastSeconds:
     def between(self, begin: int, end: int) -> list[Item]:
         """In the order in which they came; `end` is excluded."""
         return [item for item in self._items if begin <= item.cycle < end]
+
+
+class LastStates:
+    """Checkpoints of the last seconds, and the newest whole one before them: a replay of these seconds begins there."""
+
+    def __init__(self, units: Iterable[str], most_bytes: int = MOST_STATES) -> None:
+        self._units, self._most = frozenset(units), most_bytes
+        self._states: dict[int, StatesOfUnits] = {}
+
+    def add(self, cycle: int, unit: str, state: bytes) -> None:
+        """The state before `cycle`: of a unit, or of all without a name."""
+        self._states.setdefault(cycle, {})[unit] = state
+
+    def forget(self, before: float) -> None:
+        """Those that are older, but for the newest whole one; and the oldest when there are too many."""
+        begin = self._newest_whole(before)
+        self._states = {cycle: of for cycle, of in self._states.items() if cycle >= before or cycle == begin}
+        size = sum(len(state) for of in self._states.values() for state in of.values())
+        for cycle in sorted(self._states)[:-1]:
+            if size > self._most:
+                size -= sum(map(len, self._states.pop(cycle).values()))
+
+    def between(self, begin: int, end: int) -> dict[int, StatesOfUnits]:
+        """Whole ones: from the newest at or before `begin` to that at `end`, by cycle."""
+        first = max(0, self._newest_whole(begin))
+        return {cycle: dict(self._states[cycle]) for cycle in self._whole() if first <= cycle <= end}
+
+    def _newest_whole(self, cycle: float) -> int:
+        """At or before a cycle; -1 if there is none."""
+        return max((each for each in self._whole() if each <= cycle), default=-1)
+
+    def _whole(self) -> list[int]:
+        """Cycles with a state of every unit."""
+        return sorted(cycle for cycle, of in self._states.items() if "" in of or self._units <= of.keys())
 
 
 class History:

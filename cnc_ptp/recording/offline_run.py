@@ -67,9 +67,10 @@ class OfflineRun:
                 snapshots=snapshots,
                 publish=self._note_event,
             )
+        self._sink = self.recorder or self._recording
         self._checkpoints: Checkpoints | None = None
-        if self._recording is not None and checkpoint_seconds > 0.0:
-            self._checkpoints = Checkpoints(self._recording, parameters, checkpoint_seconds)
+        if self._sink is not None and checkpoint_seconds > 0.0:
+            self._checkpoints = Checkpoints(self._sink, parameters, checkpoint_seconds)
 
     def step(self) -> Outputs:
         """The next block of all units."""
@@ -90,10 +91,9 @@ class OfflineRun:
         return isinstance(self._recording, TriggeredRecording) and self._recording.begin is None
 
     def close(self) -> None:
-        sink = self.recorder or self._recording
-        if sink is not None:
+        if self._sink is not None:
             with self._going_on():
-                sink.close()
+                self._sink.close()
 
     @property
     def now(self) -> float:
@@ -105,21 +105,11 @@ class OfflineRun:
         if sink is not None:
             with self._going_on():
                 write(sink, outputs)
-                if self._has_checkpoints:
-                    self._watch_checkpoints()
+                if self._checkpoints is not None and (self.recorder or not self.waits_for_trigger):
+                    self._checkpoints.watch(self.machine)
         if self.recorder is not None:
             self.recorder.carry_out(self.now)
         return outputs
-
-    @property
-    def _has_checkpoints(self) -> bool:
-        """While the recording of the run is being written; those on demand have none."""
-        is_current = self.recorder is None or self.recorder.current is self._recording
-        return is_current and not self.waits_for_trigger
-
-    def _watch_checkpoints(self) -> None:
-        if self._checkpoints is not None:
-            self._checkpoints.watch(self.machine)
 
     def _note_event(self, event: Event) -> None:
         """Of the recorder, which records it as one of the run."""

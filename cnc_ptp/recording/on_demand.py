@@ -13,12 +13,22 @@ from concurrent.futures import Future, ThreadPoolExecutor, wait
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import NamedTuple
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import CommandRecord, CycleBlock, CycleTick, Event, Severity
-from cnc_ptp.recording.memory import BLOCK, RAW, TICK, History, Item, LastSeconds, write_record
-from cnc_ptp.recording.origin import RECORD_WHEN, WITHOUT, origin
+from cnc_ptp.recording.memory import (
+    BLOCK,
+    RAW,
+    TICK,
+    History,
+    Item,
+    LastSeconds,
+    LastStates,
+    StatesOfUnits,
+    write_record,
+)
+from cnc_ptp.recording.origin import COMPUTABLE_FROM, RECORD_WHEN, WITHOUT, origin
 from cnc_ptp.recording.settings import Settings
 from cnc_ptp.recording.trigger import Condition
 from cnc_ptp.recording.writer import Recording
@@ -83,6 +93,22 @@ class Snapshots:
     when: Condition | None = None
 
 
+class Kept(NamedTuple):
+    """What a snapshot has: commands and events, checkpoints with their texts, all else."""
+
+    records: list[CommandRecord | Event]
+    states: dict[int, StatesOfUnits]
+    texts: dict[str, str]
+    items: list[Item]
+
+    def write(self, recording: Recording) -> None:
+        for record in self.records:
+            write_record(recording, record)
+        write_states(recording, self.texts, self.states)
+        for item in self.items:
+            item.write(recording)
+
+
 class OnDemand:
     """Takes what a recording takes; hands it on to the one that is being written, if any.
 
@@ -116,6 +142,9 @@ class OnDemand:
         self._history = History()
         keeps = snapshots.keep > 0.0
         self._kept = LastSeconds(self._cycles(snapshots.keep + MARGIN)) if keeps else None
+        self._states = LastStates(self._next)
+        self._texts: dict[str, str] = {}
+        """Long ones of states, by digest."""
         self._jobs: list[Job] = []
         self._writing: list[tuple[Future[Answer], Done]] = []
         self._writer = ThreadPoolExecutor(max_workers=1, thread_name_prefix="snapshot")
@@ -171,11 +200,17 @@ class OnDemand:
         if self.current is not None and self._tick_begin < self._end:
             self.current.raw(topic, type_name, cdr, log_time_ns)
 
-    def unit_state(self, cycle: int, unit: str, state: bytes, texts: Mapping[str, str]) -> None:
-        """Of a checkpoint before `cycle`; `texts`: all long ones so far, by digest. Snapshots have none."""
+    def checkpoint_texts(self, texts: Mapping[str, str]) -> None:
+        """Long texts that states refer to, by digest."""
+        self._texts |= texts
+
+    def checkpoint(self, cycle: int, state: bytes, unit: str = "") -> None:
+        """The state before `cycle`: of all units, or of `unit` as a part of it."""
+        self._states.add(cycle, unit, state)
+        oldest = math.inf if self._kept is None else self._kept.oldest
+        self._states.forget(min(oldest, self._newest - self._cycles(PATIENCE)))
         if self.current is not None and self._begin <= cycle <= self._end:
-            self.current.checkpoint_texts(texts)
-            self.current.checkpoint(cycle, state, unit)
+            write_states(self.current, self._texts, {cycle: {unit: state}})
 
     def flush_if_due(self, now: float) -> None:
         """`now` in s of any steady clock."""
@@ -213,6 +248,7 @@ class OnDemand:
         self._begin, self._end = begin, math.inf
         for record in self._history.before(begin):
             write_record(self.current, record)
+        write_states(self.current, self._texts, self._states.between(begin, begin))
         text = f"{RECORDER}: recording {file} begins with cycle {begin}"
         self._publish(Event(begin, RECORDER, Severity.INFO, RECORDING_BEGUN, text))
         return Answer(begin)
@@ -338,23 +374,19 @@ class OnDemand:
         whole = self._kept.first_whole(self._next) or 0
         wanted = self._kept.begin_of_block(end - self._cycles(seconds or self._snapshots.keep))
         begin = max(wanted, whole)
-        items, records = self._kept.between(begin, end), self._history.before(end)
+        states = self._states.between(begin, end)
+        kept = Kept(self._history.before(end), states, dict(self._texts), self._kept.between(begin, end))
         warning = ""
         if seconds and wanted < whole:
-            kept = (end - begin) * self.stamps.cycle_time_ns * 1e-9
-            warning = f"{RECORDER}: {kept:g} s were kept and are in the snapshot, {seconds:g} s were asked for"
-        return self._writer.submit(self._write_items, file, begin, end, items, records, warning)
+            duration = (end - begin) * self.stamps.cycle_time_ns * 1e-9
+            warning = f"{RECORDER}: {duration:g} s were kept and are in the snapshot, {seconds:g} s were asked for"
+        return self._writer.submit(self._write_kept, file, begin, end, kept, warning)
 
-    def _write_items(
-        self, file: str, begin: int, end: int, items: list[Item], records: list[Any], warning: str
-    ) -> Answer:
+    def _write_kept(self, file: str, begin: int, end: int, kept: Kept, warning: str) -> Answer:
         try:
             settings = Settings(self._settings.compression, files=self._settings.files)
             with self._make(file, settings, begin, f"snapshot of cycles {begin} to {end - 1}") as recording:
-                for record in records:
-                    write_record(recording, record)
-                for item in items:
-                    item.write(recording)
+                kept.write(recording)
         except CncError as error:
             return Answer(error=error)
         return Answer(begin, warning)
@@ -380,13 +412,23 @@ def begun_file(error_id: int, text: str) -> str:
     return begun[1] if begun is not None and error_id == RECORDING_BEGUN else ""
 
 
+def write_states(recording: Recording, texts: Mapping[str, str], states: Mapping[int, StatesOfUnits]) -> None:
+    """Checkpoints by their cycles, and the long texts that they refer to."""
+    if states:
+        recording.checkpoint_texts(texts)
+    for cycle, of_units in states.items():
+        for unit, state in of_units.items():
+            recording.checkpoint(cycle, state, unit)
+
+
 def without_what(first_cycle: int, forgotten: int = -1) -> dict[str, str]:
-    """For the metadata: why a run cannot be computed again, if it cannot."""
-    if first_cycle > 0:
-        return {WITHOUT: f"the recorder came at cycle {first_cycle}, commands before it are not recorded"}
-    if forgotten >= 0:
-        return {WITHOUT: f"commands up to cycle {forgotten} were forgotten before it began, there were too many"}
-    return {}
+    """For the metadata: why a run cannot be computed again from 0 if it cannot, and from which cycle on it can."""
+    if first_cycle <= 0 and forgotten < 0:
+        return {}
+    why = f"commands up to cycle {forgotten} were forgotten before it began, there were too many"
+    if first_cycle > forgotten:
+        why = f"the recorder came at cycle {first_cycle}, commands before it are not recorded"
+    return {WITHOUT: why, COMPUTABLE_FROM: str(max(first_cycle, forgotten + 1))}
 
 
 def free_name(folder: Path, stem: str) -> Path:

@@ -143,6 +143,11 @@ class OpenRecording:
         self._require_pieces(topic, start, end)
         return (part for part in self._parts(topic, names, start, end) if len(part[names[0]]))
 
+    @property
+    def attachments(self) -> set[str]:
+        """Their names."""
+        return {name for file in self._files for name in file.attachments}
+
     def attached(self, name: str) -> str:
         """The text of an attachment, `machine.yaml`. Raises CncError 26011 where there is none of this name."""
         for file in self._files:

@@ -25,7 +25,9 @@ FORMAT_VERSION = 1
 RECORD_WHEN = "record_when"
 """Key: the condition of a recording that does not begin with the run, or who has begun it."""
 WITHOUT = "not_computable"
-"""Key: what is missing for the run to be computed again, if anything."""
+"""Key: what is missing for the run to be computed again from 0, if anything."""
+COMPUTABLE_FROM = "computable_from"
+"""Key: from which cycle on nothing is missing; a checkpoint at or behind it is a beginning."""
 PART = "part"
 """Key: the number of a file of several, from 0 on."""
 TIMES = {"start_ns": 0, "cycle_time_ns": 1}
@@ -85,7 +87,7 @@ def require_times(path: Path, notes: Mapping[str, str]) -> None:
 def notes_of(path: Path, records: Iterable[Mapping[str, str]]) -> dict[str, str]:
     """What the files of a recording say of it, one after another; the first that says something counts.
 
-    Without its earlier parts it is not computable. Raises CncError 26003, 26016.
+    Without all of its parts it is not computable. Raises CncError 26003, 26016.
     """
     notes: dict[str, str] = {}
     parts: list[str] = []
@@ -101,24 +103,35 @@ def notes_of(path: Path, records: Iterable[Mapping[str, str]]) -> dict[str, str]
     lacking = next((number for number, part in enumerate(parts) if part != str(number)), None)
     if lacking is not None:
         notes.setdefault(WITHOUT, f"part {lacking} of the run is not there")
+        notes.pop(COMPUTABLE_FROM, None)
     return notes
 
 
 def require_own(path: Path, metadata: Mapping[str, str], states: Collection[str]) -> None:
     """Raises CncError 26017 for an MCAP file of another program: neither our metadata nor `states` of ours."""
     if not metadata and not states:
-        raise CncError(
-            FOREIGN,
-            f"recording {path}: is not of cnc_ptp",
-            "nothing was drawn; `cnc_ptp export` reads its topics",
-        )
+        raise foreign(path, "nothing was drawn")
+
+
+def foreign(path: Path, effect: str) -> CncError:
+    return CncError(FOREIGN, f"recording {path}: is not of cnc_ptp", f"{effect}; `cnc_ptp export` reads its topics")
 
 
 def require_computable(path: Path, metadata: Mapping[str, str]) -> None:
     """Raises CncError 26018 for a recording that says that something is missing for it."""
     if WITHOUT in metadata:
-        raise CncError(
-            NOT_COMPUTABLE,
-            f"recording {path}: {metadata[WITHOUT]}",
-            "the run cannot be computed again, its states can be read and drawn",
-        )
+        raise not_computable(path, metadata[WITHOUT])
+
+
+def computable_from(path: Path, metadata: Mapping[str, str]) -> int:
+    """The first cycle at which a checkpoint is a beginning, 0: all can be computed. Raises CncError 26018 for none."""
+    cycle = metadata.get(COMPUTABLE_FROM, "")
+    if cycle.isdecimal() and len(cycle) <= MOST_DIGITS:
+        return int(cycle)
+    require_computable(path, metadata)
+    return 0
+
+
+def not_computable(path: Path, why: str) -> CncError:
+    effect = "the run cannot be computed again, its states can be read and drawn"
+    return CncError(NOT_COMPUTABLE, f"recording {path}: {why}", effect)

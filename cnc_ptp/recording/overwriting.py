@@ -53,6 +53,11 @@ def replacing(output: str | Path) -> Iterator[Path]:
             part.unlink(missing_ok=True)
 
 
+def why_not_written(error: OSError) -> str:
+    """Why a file cannot be written: other libraries name the temporary file in their texts."""
+    return os.strerror(error.errno) if error.errno else str(error)
+
+
 def _same(one: Path, other: Path) -> bool:
     """Whether both are one file, or would be: links of either kind count, and files that do not exist yet."""
     return one.resolve() == other.resolve() or (one.exists() and other.exists() and one.samefile(other))

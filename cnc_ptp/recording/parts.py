@@ -19,7 +19,8 @@ from mcap.writer import MCAP0_MAGIC
 
 from cnc_ptp import yaml_text
 from cnc_ptp.errors import CncError
-from cnc_ptp.recording.bag import FILE, INFORMATION, bag_information, metadata_text
+from cnc_ptp.recording.bag import FILE, INFORMATION, bag_information, metadata_text, write_beside
+from cnc_ptp.recording.mcap_chunks import UNREADABLE
 from cnc_ptp.recording.overwriting import replacing
 
 NO_BAG = 26014
@@ -155,6 +156,12 @@ def describe_folder(folder: Path) -> None:
     write_folder(folder, [information_of(part) for part in begun_parts(folder, folder.stem)])
 
 
+def describe_file(recording: Path) -> None:
+    """Writes the `metadata.yaml` beside a file that was moved there; a device has none."""
+    if recording.is_file():
+        write_beside(recording, information_of(recording))
+
+
 def information_of(part: Path) -> dict[str, Any]:
     """From the summary of a file."""
     with part.open("rb") as stream:
@@ -166,7 +173,23 @@ def information_of(part: Path) -> dict[str, Any]:
 
 
 def files_of(path: Path) -> list[Path]:
-    """The file, or those of a folder or of its `metadata.yaml`. Raises CncError 26014 for other folders."""
+    """The file, or those of a folder or of its `metadata.yaml`.
+
+    Raises CncError 26001 for a part that is not there, 26014 for other folders.
+    """
+    files = named_files_of(path)
+    missing = [file for file in files if file != path and not file.exists()]
+    if missing:
+        raise CncError(
+            UNREADABLE,
+            f"recording {missing[0].parent}: its part {missing[0].name} is not there",
+            "nothing was read, put it back, or 'cnc_ptp recover' makes a recording of the others",
+        )
+    return files
+
+
+def named_files_of(path: Path) -> list[Path]:
+    """As files_of, with parts that are not there. Raises CncError 26014 for other folders."""
     folder = path.parent if path.name == FILE else path
     if not folder.is_dir():
         return [path]

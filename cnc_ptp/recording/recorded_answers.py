@@ -7,7 +7,7 @@ recording. What the recording does not have is answered immediately.
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping
 from typing import Final, NamedTuple
 
@@ -40,16 +40,16 @@ class Asked(NamedTuple):
 class RecordedAnswers:
     """Requests of the recording from the block before `begin` on, with the delays of their answers in cycles.
 
-    Blocks are read as far as the run has come, or as far as a request is looked for.
+    That block is the machine's, which need not be recorded. The others are read as far as the run has come, or as far
+    as a request is looked for.
     """
 
-    def __init__(self, recorded: RunInputs, begin: int, block_cycles: int) -> None:
-        before = max(0, begin - block_cycles)
-        self._begin, self._before = begin, before
-        self._channels = recorded.messages([CHANNEL_BLOCK], before)
-        self._spindles = recorded.messages([SPINDLE_BLOCK], before)
+    def __init__(self, recorded: RunInputs, begin: int) -> None:
+        self._begin = begin
+        self._channels = recorded.messages([CHANNEL_BLOCK], begin)
+        self._spindles = recorded.messages([SPINDLE_BLOCK], begin)
         self._channels_reached = self._spindles_reached = -1
-        self._commands: set[Given] = set()
+        self._commands: Counter[Given] = Counter()
         """Those of the channels, which they give again."""
         self._requests: dict[int, Asked] = {}
         self._newest: dict[str, int] = defaultdict(int)
@@ -67,8 +67,19 @@ class RecordedAnswers:
             if record.command == GEAR_CHANGED:
                 self._gears_changed[record.target].append(record.cycle)
 
+    def take(self, blocks: Mapping[str, CycleBlock]) -> None:
+        """The blocks before `begin`, by unit."""
+        for name, block in blocks.items():
+            if isinstance(block, ChannelBlock):
+                self._note_requests(block)
+            elif isinstance(block, SpindleBlock):
+                self._note_gear(name, block)
+
     def gives(self, record: CommandRecord) -> bool:
-        """A command that the changed run gives itself: of a channel, or an answer to what is asked for in it."""
+        """A command that the changed run gives itself: of a channel, or an answer to what is asked for in it.
+
+        To be asked once of each: of two equal ones in a cycle one may be of somebody else.
+        """
         if record.cycle < self._begin:
             return False
         if record.command == COUPLING_ANSWER:
@@ -79,7 +90,9 @@ class RecordedAnswers:
         self._read_channels_to(record.cycle)
         if record.command == "acknowledge":
             return record.accepted and Command.from_record(record).arguments["id"] in self._requests
-        return (record.cycle, record.target, record.command, record.arguments_json) in self._commands
+        given = record.cycle, record.target, record.command, record.arguments_json
+        self._commands[given] -= 1
+        return self._commands[given] >= 0
 
     def acknowledged_after(self, request: HandshakeRequest, first_cycle: int) -> int | None:
         """Cycles from the block of a request, at `first_cycle`, to its acknowledgement; None: it never was."""
@@ -118,13 +131,10 @@ class RecordedAnswers:
             return False
         block = codec_of(ChannelBlock).decode(message.cdr)
         self._channels_reached = block.first_cycle
-        if block.first_cycle < self._before:
-            return True
-        for request in block.requests:
-            self._requests[request.id] = Asked(function_of(request), block.first_cycle)
-            self._newest[request.channel] = max(self._newest[request.channel], request.id)
-        for command in block.commands if block.first_cycle >= self._begin else ():
-            self._commands.add((block.first_cycle, command.target, command.command, json_of(command.arguments)))
+        if block.first_cycle >= self._begin:
+            self._note_requests(block)
+            for command in block.commands:
+                self._commands[block.first_cycle, command.target, command.command, json_of(command.arguments)] += 1
         return True
 
     def _read_spindles(self) -> bool:
@@ -134,12 +144,19 @@ class RecordedAnswers:
             return False
         block = codec_of(SpindleBlock).decode(message.cdr)
         self._spindles_reached = block.first_cycle
-        if block.first_cycle >= self._before:
-            name = message.topic.removesuffix("/block").lstrip("/")
-            if block.gear_request and not self._gear_waits.get(name):
-                self._gears[name].append(Asked((block.gear_request,), block.first_cycle))
-            self._gear_waits[name] = block.gear_request
+        if block.first_cycle >= self._begin:
+            self._note_gear(message.topic.removesuffix("/block").lstrip("/"), block)
         return True
+
+    def _note_requests(self, block: ChannelBlock) -> None:
+        for request in block.requests:
+            self._requests[request.id] = Asked(function_of(request), block.first_cycle)
+            self._newest[request.channel] = max(self._newest[request.channel], request.id)
+
+    def _note_gear(self, name: str, block: SpindleBlock) -> None:
+        if block.gear_request and not self._gear_waits.get(name):
+            self._gears[name].append(Asked((block.gear_request,), block.first_cycle))
+        self._gear_waits[name] = block.gear_request
 
 
 class DelayedAnswers:

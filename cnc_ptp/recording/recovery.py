@@ -9,7 +9,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from errno import EEXIST
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from mcap.opcode import Opcode
 from mcap.records import Channel, Metadata, Schema
@@ -17,15 +16,15 @@ from mcap.well_known import MessageEncoding, SchemaEncoding
 from mcap.writer import MCAP0_MAGIC
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.recording.bag import FILE, RECORD, write_beside
+from cnc_ptp.recording.bag import FILE, RECORD
 from cnc_ptp.recording.mcap_chunks import KNOWN_OPCODES, STEP, MessageRun, RawRecord, RecordReader
-from cnc_ptp.recording.mcap_file import METADATA, MISSING, NOT_WRITTEN, RECORD_PREFIX, McapFile
+from cnc_ptp.recording.mcap_file import METADATA, MISSING, RECORD_PREFIX, McapFile
 from cnc_ptp.recording.mcap_index import McapIndex
+from cnc_ptp.recording.new_recording import NOTHING_WRITTEN, folder_beside, in_place_of, not_written
 from cnc_ptp.recording.origin import WITHOUT
-from cnc_ptp.recording.parts import NO_FOLDER, PartsFolder, files_of, information_of, replace_parts
+from cnc_ptp.recording.parts import NO_FOLDER, PartsFolder, describe_file, information_of, named_files_of, replace_parts
 
 NOTHING_SAVED = 26224
-NOTHING_WRITTEN = "nothing was written"
 
 
 @dataclass
@@ -47,33 +46,11 @@ def recover(source: str | Path, output: str | Path) -> Recovered:
     path, new = Path(source), Path(output)
     if not path.is_file() or path.name == FILE:
         return _recover_parts(path, new)
-    target = Path(os.path.realpath(new))
-    try:
-        with _beside(target, new) as part:
-            recovered = _recover_file(path, part)
-            require_something(path, recovered)
-            os.replace(part, target)
-    except OSError as error:
-        reason = f"recording {new}: cannot be created: {error.strerror}"
-        raise CncError(NOT_WRITTEN, reason, NOTHING_WRITTEN) from error
-    write_beside(new, information_of(new))
+    with in_place_of(new) as part:
+        recovered = _recover_file(path, part)
+        require_something(path, recovered)
+    describe_file(new)
     return recovered
-
-
-@contextmanager
-def _beside(target: Path, output: Path) -> Iterator[Path]:
-    """The name of `target` in a folder beside it, which is removed at the end: what is written there has to be moved.
-
-    Raises CncError 26007 of `output` where there is no room for it, OSError where there can be no folder.
-    """
-    with TemporaryDirectory(prefix=".part.", dir=target.parent) as folder:
-        try:
-            yield Path(folder) / target.name
-        except CncError as error:
-            if error.number != NOT_WRITTEN:
-                raise
-            why = error.reason.rpartition(": ")[2]
-            raise CncError(NOT_WRITTEN, f"recording {output}: cannot be written: {why}", NOTHING_WRITTEN) from error
 
 
 def require_something(path: Path, recovered: Recovered) -> None:
@@ -85,10 +62,10 @@ def require_something(path: Path, recovered: Recovered) -> None:
 
 def _recover_parts(source: Path, output: Path) -> Recovered:
     """`lost` names the part."""
-    parts = files_of(source)
+    parts = named_files_of(source)
     target = Path(os.path.realpath(output))
     try:
-        with _beside(target, output) as new:
+        with folder_beside(output) as new:
             if target.exists() and not target.is_dir():
                 raise FileExistsError(EEXIST, os.strerror(EEXIST))
             try:
@@ -96,8 +73,7 @@ def _recover_parts(source: Path, output: Path) -> Recovered:
                 require_something(source, whole)
                 replace_parts(new, target)
             except OSError as error:
-                reason = f"recording {output}: cannot be written: {error.strerror}"
-                raise CncError(NOT_WRITTEN, reason, NOTHING_WRITTEN) from error
+                raise not_written(output, f"cannot be written: {error.strerror}") from error
     except OSError as error:
         reason = f"recording {output}: no folder for its parts: {error.strerror}"
         raise CncError(NO_FOLDER, reason, NOTHING_WRITTEN) from error

@@ -16,6 +16,7 @@ from cnc_ptp.parameters import MachineParameters, load_machine
 from cnc_ptp.protocol.channel_states import IN_PROGRAM
 from cnc_ptp.recording.difference import COMPARED, NOT_COMPARABLE, FieldDifference, field_difference
 from cnc_ptp.recording.opened import TIME, OpenRecording
+from cnc_ptp.recording.origin import foreign
 from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, SPINDLE_STATE
 from cnc_ptp.recording.selection import NOT_RECORDED, asked_time
 from cnc_ptp.recording.writer import MACHINE_FILE
@@ -53,7 +54,7 @@ def difference(
 ) -> RunDifference:
     """In the time that both have, at most from `begin` to `end` (s).
 
-    Raises CncError 26001 to 26003, 26011 (no recording of cnc_ptp), 26016, 26022 (nothing in common), 26158 (of
+    Raises CncError 26001 to 26003, 26016, 26017 (no recording of cnc_ptp), 26022 (nothing in common), 26158 (of
     different machines).
     """
     with ExitStack() as files:
@@ -158,7 +159,10 @@ def program_times(
 
 
 def same_machine(first: OpenRecording, second: OpenRecording) -> MachineParameters:
-    """The first one's: the same units and the same cycle time. Raises CncError 26158."""
+    """The first one's: the same units and the same cycle time. Raises CncError 26017 and 26158."""
+    for file in (first, second):
+        if MACHINE_FILE not in file.attachments:
+            raise foreign(file.path, "nothing was compared")
     machines = [load_machine(file.attached(MACHINE_FILE), f"{file.path}:{MACHINE_FILE}") for file in (first, second)]
     units = [kinds_of(machine) for machine in machines]
     if units[0] != units[1] or machines[0].cycle_time_us != machines[1].cycle_time_us:

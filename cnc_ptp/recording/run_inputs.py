@@ -24,7 +24,7 @@ from cnc_ptp.recording.bag import FILE
 from cnc_ptp.recording.mcap_file import METADATA
 from cnc_ptp.recording.mcap_index import ChunkPlace, McapIndex
 from cnc_ptp.recording.opened import missing_of
-from cnc_ptp.recording.origin import notes_of, require_computable
+from cnc_ptp.recording.origin import NOT_COMPUTABLE, WITHOUT, computable_from, not_computable, notes_of
 from cnc_ptp.recording.parts import files_of
 from cnc_ptp.recording.reader import COMMAND, STATE_TYPES, TICK, RawMessage, command_record
 from cnc_ptp.recording.writer import CHECKPOINT, CHECKPOINT_TEXT, MACHINE_FILE, PLC_FILE
@@ -34,6 +34,9 @@ from cnc_ptp.wire.ticks import Tick, decode_tick
 CHECKPOINTS_OF: Final = "cnc_ptp.checkpoints"
 """Metadata of a file beside a recording: the run that its checkpoints are of."""
 NO_MACHINE: Final = 26155
+MORE_SECONDS: Final = (
+    "nothing was computed, keep more seconds (--keep) than lie between two checkpoints (--checkpoints)"
+)
 
 
 def checkpoint_file(recording: Path) -> Path:
@@ -47,7 +50,8 @@ class RunInputs:
 
     machine_yaml  empty if it has none
     commands      in the order of their cycles
-    checkpoints   cycles before which there is one, also in the file beside the recording
+    checkpoints   cycles before which there is one that is a beginning, also in the file beside the recording
+    from_0        whether the run can be computed from 0
     beside        why the file beside it does not count, empty if it does or if there is none
     plc_file      name of the PLC in a file that served the run, empty if none did
     begin, end    the first cycle whose blocks are recorded, and that after the last one
@@ -61,7 +65,9 @@ class RunInputs:
         self._beside: list[_Part] = []
         records = chain.from_iterable(part.index.metadata for part in self._parts)
         values = notes_of(self.path, (record.metadata for record in records if record.name == METADATA))
-        require_computable(self.path, values)
+        first = computable_from(self.path, values)
+        self.from_0 = not first
+        self._without = values.get(WITHOUT, "")
         self.missing = missing_of(values, (part.index for part in self._parts))
         """What the recording lacks; empty for one that is whole."""
         self.start_ns = int(values.get("start_ns", "0"))
@@ -73,7 +79,7 @@ class RunInputs:
         self.beside = self._take_beside(checkpoint_file(self.path))
         names = [name.removeprefix(CHECKPOINT) for name in self._attachments if name.startswith(CHECKPOINT)]
         numbers = {name.partition("/")[0] for name in names}
-        self.checkpoints = sorted(int(number) for number in numbers if number.isdecimal())
+        self.checkpoints = sorted(cycle for cycle in map(int, filter(str.isdecimal, numbers)) if cycle >= first)
         names = [name for name in self._attachments if name.startswith(PLC_FILE)]
         self.plc_file = names[0].removeprefix(PLC_FILE) if names else ""
         self.begin = min((tick.first_cycle for part in self._parts[:1] for tick in part.ticks(0)), default=0)
@@ -85,6 +91,25 @@ class RunInputs:
             reason = f"recording {self.path}: holds no attachment machine.yaml"
             raise CncError(NO_MACHINE, reason, "nothing was computed, record it with cnc_ptp")
         return load_machine(self.machine_yaml, f"{self.path}:{MACHINE_FILE}")
+
+    def require_from_0(self) -> None:
+        """Raises CncError 26018."""
+        if not self.from_0:
+            raise not_computable(self.path, self._without)
+
+    def no_beginning(self, begin: int, why: str) -> CncError:
+        """26018: neither 0 nor a checkpoint up to `begin` is a beginning; `why`: those that are there do not count."""
+        first = min(self.checkpoints, default=-1)
+        if first < 0:
+            lack = f"recording {self.path}: {self._without}, and it has no checkpoint"
+            remedy = "keep more seconds (--keep) than lie between two checkpoints (--checkpoints)"
+            return CncError(NOT_COMPUTABLE, lack, f"nothing was computed, {remedy}")
+        if first <= begin:
+            damage = f"recording {self.path}: {self._without}, and its checkpoints do not count: {why}"
+            return CncError(NOT_COMPUTABLE, damage, "nothing was computed, its states can be read and drawn")
+        second = self.cycle_time_ns * 1e-9
+        reason = f"recording {self.path}: {self._without}, and it has no checkpoint up to --from {begin * second:g} s"
+        return CncError(NOT_COMPUTABLE, reason, f"nothing was computed, its first one is at {first * second:g} s")
 
     def run_id(self) -> str:
         """A digest of all that decides the run: the machine and the commands."""

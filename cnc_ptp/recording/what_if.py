@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
@@ -21,7 +21,7 @@ from cnc_ptp.protocol.blocks import ChannelBlock, Command, CommandRecord, CycleB
 from cnc_ptp.protocol.channel_states import IN_PROGRAM, ChannelStateCode
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.recording.checkpoints import state_before
-from cnc_ptp.recording.computed_again import by_unit, commands_by_cycle, computed_again, fresh_machine, refused_again
+from cnc_ptp.recording.computed_again import commands_by_cycle, computed_again, fresh_machine, refused_again
 from cnc_ptp.recording.recorded_answers import DelayedAnswers, RecordedAnswers
 from cnc_ptp.recording.run_inputs import RunInputs
 from cnc_ptp.state.other_parameters import change_parameters
@@ -37,7 +37,7 @@ class Change:
 
     parameters  unit.parameter=value
     override    of all channels, percent; recorded ones no longer count
-    program     arguments of the command `load`: in place of the recorded ones, or of the program that runs at `begin`
+    program     arguments of the command `load`: in place of the program of one channel, see WhatIf.replaced
     commands    further ones, at their times
     """
 
@@ -66,18 +66,26 @@ class WhatIf:
         self.begin = self._block_at(change.begin)
         self.end = recorded.end if change.end is None else self._end_at(change.end)
         self._commands = commands_by_cycle(recorded.commands, self._old)
-        self._to_replace = self._channels_to_replace()
+        self._loads = self._loads_to_replace()
+        self.replaced = ""
+        """The channel that gets the other program: whose program runs at `begin`, or is loaded or started next."""
         self.not_replaced = ""
         """Why the other program has not come in; empty if it has, if it was refused, or if there is none."""
         self.note = ""
         self.running: list[str] = []
         """Channels whose program has not ended so far."""
-        self.given: set[tuple[int, str, str]] = set()
-        """Cycle, unit and name of the commands that the change has given."""
-        self._answers = RecordedAnswers(recorded, self.begin, self._old.block_cycles)
+        self.refused_of_change: list[CommandRecord] = []
+        """Commands of the change that were refused."""
+        self.refused_of_recording: list[CommandRecord] = []
+        """Other commands that were refused and had not been in the recorded run."""
+        self._refused_before = {content_of(record) for record in recorded.commands if not record.accepted}
+        self._answers = RecordedAnswers(recorded, self.begin)
 
     def run(self) -> Iterator[Outputs]:
-        """All blocks from `begin` on. Raises CncError 26156 for parameters that make other parts of a unit."""
+        """All blocks from `begin` on.
+
+        Raises CncError 26018 where nothing is a beginning, 26156 for parameters that make other parts of a unit.
+        """
         machine = self._at_begin()
         if self.machine is not self._old:
             runners, blocks = machine.parts
@@ -85,12 +93,15 @@ class WhatIf:
             changed = fresh_machine(self.machine)
             changed.go_on_from(machine.next_cycle, runners, blocks)
             machine = changed
+        self.replaced = self._channel_to_replace(machine.parts[1])
         replacement = self._replacement(machine.parts[1])
         replacing = next(replacement)
         while machine.next_cycle < self.end:
-            own = [*self._own_commands(machine.next_cycle), *replacing]
-            self.given |= {(machine.next_cycle, command.target, command.command) for command in own}
-            outputs = machine.changed_tick(by_unit([*self._recorded_commands(machine), *own]))
+            given = [*self._recorded_commands(machine)]
+            given += [Given(command) for command in [*self._own_commands(machine.next_cycle), *replacing]]
+            records = [machine.runner(each.command.target).command(each.command) for each in given]
+            outputs = machine.changed_tick({})
+            self._note_refused(given, records, outputs)
             replacing = replacement.send(outputs)
             self.running = [name for name, output in outputs.items() if is_in_program(output.block)]
             yield outputs
@@ -114,15 +125,22 @@ class WhatIf:
         count = self._old.block_cycles
         return round(seconds / self._cycle_time) // count * count
 
-    def _channels_to_replace(self) -> list[str]:
-        """Those for which a program was loaded, where none is loaded after `begin`. Raises CncError 26157."""
+    def _loads_to_replace(self) -> list[CommandRecord]:
+        """The recorded loads, for `--program`. Raises CncError 26157 without any."""
         if self._change.program is None:
             return []
         loads = self._taken("load")
         if not loads:
             raise CncError(NO_LOAD, "--program takes the place of a program, and none is loaded", NOTHING)
-        late = any(record.cycle >= self.begin for record in loads)
-        return [] if late else [*dict.fromkeys(record.target for record in loads)]
+        return loads
+
+    def _channel_to_replace(self, blocks: Mapping[str, CycleBlock]) -> str:
+        """`blocks`: the newest of all units. Empty without `--program`."""
+        before = [record.target for record in self._loads if record.cycle < self.begin]
+        running = [name for name in before if not is_at_rest(blocks[name])]
+        next_ones = sorted([*self._loads, *self._taken("start")], key=lambda record: record.cycle)
+        later = [record.target for record in next_ones if record.cycle >= self.begin]
+        return next(iter([*running, *later, *before]), "") if self._loads else ""
 
     def _taken(self, command: str) -> list[CommandRecord]:
         """The recorded commands of this name that were not refused."""
@@ -132,13 +150,13 @@ class WhatIf:
     def _replacement(self, blocks: Mapping[str, CycleBlock]) -> Generator[list[Command], Outputs, None]:
         """Reset, when the path stands load, and start if that was taken: the commands of each block, without an end.
 
-        The first channel that is not at rest gets the program, or the first one; of a channel at rest that is started
-        by the recording later on it is only loaded. `blocks`: the newest of all units; then the outputs are sent.
+        Nothing where the channel is loaded later on: that is another load then. A channel at rest that is started later
+        on is only loaded. `blocks`: the newest of all units; then the outputs are sent.
         """
-        if self._to_replace:
-            active = [name for name in self._to_replace if name in blocks and not is_at_rest(blocks[name])]
-            channel = [*active, *self._to_replace][0]
-            if active:
+        channel = self.replaced
+        if channel and not self._comes(channel, "load"):
+            runs = not is_at_rest(blocks[channel])
+            if runs:
                 outputs = yield [Command(channel, "reset")]
                 while not is_at_rest(block := outputs[channel].block):
                     self.not_replaced = f"the program is not loaded: {channel} is in state {state_of(block).name}"
@@ -146,32 +164,42 @@ class WhatIf:
             self.not_replaced = ""
             outputs = yield [Command(channel, "load", dict(self._change.program or {}))]
             loaded = all(record.accepted for record in outputs[channel].records if record.command == "load")
-            is_started_later = any(each.target == channel and each.cycle >= self.begin for each in self._taken("start"))
-            if loaded and (active or not is_started_later):
+            if loaded and (runs or not self._comes(channel, "start")):
                 yield [Command(channel, "start")]
         while True:
             yield []
 
+    def _comes(self, channel: str, command: str) -> bool:
+        """From `begin` on, in the recording."""
+        return any(each.target == channel and each.cycle >= self.begin for each in self._taken(command))
+
     def _at_begin(self) -> OfflineMachine:
         """The machine as it was recorded before `begin`, with a PLC that answers as the recorded one did."""
         machine = fresh_machine(self._old)
-        if self.begin:  # at 0 there is nothing to be restored
-            state, why = state_before(self._recorded, self._old, self.begin)
-            if state is None:
-                self.note = f"computed from 0 s: {why}"
-            else:
-                machine.go_on_from(*state)
-                self.note = f"computed from the checkpoint at {state.next_cycle * self._cycle_time:g} s"
+        # at 0 there is nothing to be restored
+        state, why = state_before(self._recorded, self._old, self.begin) if self.begin else (None, "")
+        if state is not None:
+            machine.go_on_from(*state)
+            self.note = f"computed from the checkpoint at {state.next_cycle * self._cycle_time:g} s"
+        elif not self._recorded.from_0:
+            raise self._recorded.no_beginning(self.begin, why)
+        elif self.begin:
+            self.note = f"computed from 0 s: {why}"
         deque(computed_again(machine, self._commands, self.begin), maxlen=0)
+        self._answers.take(machine.parts[1])
         plc = machine.runner(PLC).unit
         assert isinstance(plc, PlcUnit)
         plc.do_auto_acknowledge(self.begin, enabled=False)
         plc.outside.append(DelayedAnswers(self._answers))
         return machine
 
-    def _recorded_commands(self, machine: OfflineMachine) -> list[Command]:
-        records = refused_again(machine, self._commands.get(machine.next_cycle, ()))
-        return [command for record in records if (command := self._changed(record)) is not None]
+    def _recorded_commands(self, machine: OfflineMachine) -> Iterator[Given]:
+        for record in refused_again(machine, self._commands.get(machine.next_cycle, ())):
+            if self._is_other_load(record):
+                program = dict(self._change.program or {})
+                yield Given(Command(record.target, "load", program, record.id), None if record.accepted else record)
+            elif not (self._answers.gives(record) or self._is_other_override(record)):
+                yield Given(Command.from_record(record), record)
 
     def _own_commands(self, cycle: int) -> list[Command]:
         """Override and further commands of the change in the block that begins with `cycle`."""
@@ -184,17 +212,36 @@ class WhatIf:
                 given.append(entry.command)
         return given
 
-    def _changed(self, record: CommandRecord) -> Command | None:
-        change, command = self._change, Command.from_record(record)
-        if self._answers.gives(record):
-            return None
-        if change.override is not None and command.command == "set_override" and command.target in self._old.channels:
-            return None
-        if change.program is not None and command.command == "load":
-            if record.accepted:
-                self.given.add((record.cycle, command.target, "load"))
-            return Command(command.target, "load", dict(change.program), command.id)
-        return command
+    def _is_other_load(self, record: CommandRecord) -> bool:
+        return record.command == "load" and record.target == self.replaced
+
+    def _is_other_override(self, record: CommandRecord) -> bool:
+        change = self._change.override
+        return change is not None and record.command == "set_override" and record.target in self._old.channels
+
+    def _note_refused(self, given: Sequence[Given], records: Sequence[CommandRecord], outputs: Outputs) -> None:
+        """`records`: of what was given in a block. The others of its outputs are of commands that units have given."""
+        for each, record in zip(given, records, strict=True):
+            if not record.accepted and each.recorded is None:
+                self.refused_of_change.append(record)
+            elif not record.accepted and each.recorded is not None and each.recorded.accepted:
+                self.refused_of_recording.append(record)
+        known = {id(record) for record in records}
+        of_units = (record for output in outputs.values() for record in output.records if id(record) not in known)
+        refused = (record for record in of_units if not record.accepted)
+        self.refused_of_recording += [record for record in refused if content_of(record) not in self._refused_before]
+
+
+class Given(NamedTuple):
+    """A command from outside, and its record in the recording; None where the change has given it."""
+
+    command: Command
+    recorded: CommandRecord | None = None
+
+
+def content_of(record: CommandRecord) -> tuple[int, str, str, str]:
+    """What makes a command of one unit to another the same one."""
+    return record.cycle, record.target, record.command, record.arguments_json
 
 
 def state_of(block: CycleBlock) -> ChannelStateCode:

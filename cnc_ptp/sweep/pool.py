@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import logging
 import os
+import re
+import socket
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
@@ -24,6 +26,9 @@ GLANCE = 0.2
 """s between two looks at whether the sweep is to end."""
 IN_STOCK = 2
 """Variants that are on their way for each thread of a worker."""
+ADDRESS = re.compile(r"(tcp|tls)://(?P<name>[^\[\]:/]+)")
+START_IT = "start it with `dask scheduler`, or leave out --scheduler: processes of this computer compute then"
+START_WORKER = "start one with `dask worker {}`"
 KEPT = "what is finished is kept, the same command continues"
 
 
@@ -62,16 +67,17 @@ class Pool:
 
     def _connected(self, scheduler: str) -> Any:
         """Raises CncError 26181."""
+        require_known(scheduler)
         try:
             client = self._distributed.Client(scheduler, timeout=PATIENCE)
         except (OSError, TimeoutError, ValueError, TypeError) as error:
             reason = str(error).splitlines()[0] if str(error) else type(error).__name__
-            raise CncError(NO_SCHEDULER, f"scheduler {scheduler} does not answer: {reason}", NOTHING) from None
+            raise no_scheduler(f"{scheduler} does not answer: {reason}", START_IT) from None
         try:
             client.wait_for_workers(1, timeout=PATIENCE)
         except TimeoutError:
             client.close()
-            raise CncError(NO_SCHEDULER, f"scheduler {scheduler} has no worker", NOTHING) from None
+            raise no_scheduler(f"{scheduler} has no worker", START_WORKER.format(scheduler)) from None
         return client
 
     @property
@@ -171,3 +177,19 @@ class Pool:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+
+
+def require_known(scheduler: str) -> None:
+    """Raises CncError 26181 for a computer whose name nobody knows: Dask would only say that it does not answer."""
+    found = ADDRESS.match(scheduler)
+    if found is None:  # Dask says what is wrong with the address
+        return
+    try:
+        socket.getaddrinfo(found["name"], None)
+    except (OSError, UnicodeError):
+        reason = f"{scheduler}: no computer '{found['name']}' is known here"
+        raise no_scheduler(reason, "write its name as `getent hosts` knows it, or its address") from None
+
+
+def no_scheduler(reason: str, remedy: str) -> CncError:
+    return CncError(NO_SCHEDULER, f"scheduler {reason}", f"{NOTHING}, {remedy}")

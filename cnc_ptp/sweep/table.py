@@ -10,7 +10,7 @@ from typing import Any
 
 from cnc_ptp.commissioning.faults import BAD_OUTPUT
 from cnc_ptp.errors import CncError
-from cnc_ptp.recording.overwriting import replacing
+from cnc_ptp.recording.overwriting import replacing, why_not_written
 from cnc_ptp.sweep.faults import NO_SWEEP_TABLE, NOTHING, sweep_package
 from cnc_ptp.sweep.journal import SWEEP, Description, description_of, require_same
 from cnc_ptp.sweep.results import Results, Row
@@ -39,7 +39,7 @@ def write_table(file: Path, results: Results, description: Description) -> None:
         with replacing(file) as part:
             parquet.write_table(table, part, compression="zstd")
     except OSError as error:
-        raise CncError(BAD_OUTPUT, f"{file} cannot be written: {error.strerror}", KEPT) from None
+        raise CncError(BAD_OUTPUT, f"{file} cannot be written: {why_not_written(error)}", KEPT) from None
 
 
 def _alike(values: Sequence[Any]) -> list[Any]:

@@ -6,6 +6,7 @@ from mcap.writer import Writer
 from recording_support import foreign_file, smooth_run
 
 NOT_OURS = "P-ERR-26017 recording {foreign}: is not of cnc_ptp; nothing was drawn; `cnc_ptp export` reads its topics"
+NOT_COMPARED = NOT_OURS.replace("drawn", "compared")
 NO_MACHINE = "P-ERR-26011 recording {foreign}: holds no attachment 'machine.yaml'; nothing was read"
 NOT_COMPUTED = (
     "P-ERR-26155 recording {foreign}: holds no attachment machine.yaml; nothing was computed, record it with cnc_ptp"
@@ -21,7 +22,8 @@ NOT_COMPUTED = (
             "plot {foreign} x/set_velocity -o {new}.svg",
             "P-ERR-26011 recording {foreign}: holds no unit 'x' with states; there are none; nothing was drawn",
         ),
-        ("diff {foreign} {own} -o {new}.html", NO_MACHINE),
+        ("diff {foreign} {own} -o {new}.html", NOT_COMPARED),
+        ("diff {own} {foreign}", NOT_COMPARED),
         (
             "replay {foreign}",
             "P-ERR-26004 recording {foreign}: holds no attachment machine.yaml; it cannot be verified, record it with "

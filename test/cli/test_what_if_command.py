@@ -249,7 +249,7 @@ def test_files_that_are_no_recordings_of_this_version(words: list[object], recor
     )
     other = foreign(tmp_path / "other.mcap")
     without = (
-        "P-ERR-26011 recording {}: holds no attachment 'machine.yaml'; nothing was read"
+        "P-ERR-26017 recording {}: is not of cnc_ptp; nothing was compared; `cnc_ptp export` reads its topics"
         if words is DIFF
         else "P-ERR-26155 recording {}: holds no attachment machine.yaml; nothing was computed, record it with cnc_ptp"
     )

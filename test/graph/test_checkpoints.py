@@ -104,20 +104,28 @@ def test_without_checkpoints_they_are_made_beside_the_recording(
     assert "note: computed from the checkpoint at 3 s" in call("replay", path, "--from", 3.2).output
 
 
-def test_a_recording_on_demand_has_those_of_its_time(tmp_path: Path) -> None:
-    path = tmp_path / "late.mcap"
-    running = Running(MILL, "--program", program(tmp_path), "--recorder", "--checkpoints", 1, "--stay")
+def test_recordings_on_demand_and_snapshots_have_those_of_their_time_and_one_before(tmp_path: Path) -> None:
+    path, snapshot = tmp_path / "late.mcap", tmp_path / "snapshot.mcap"
+    words = ("--program", program(tmp_path), "--keep", 5, "--checkpoints", 1, "--stay")
+    running = Running(MILL, *words)
     try:
         running.wait_for_nodes(6)
         run("do", "recorder", "start", path)
         running.wait_until_recorded(path, 300_000)
+        run("do", "recorder", "snapshot", snapshot, "seconds=1.5")
         run("do", "recorder", "stop")
-        recorded = read_recording(path)
-        begin, end = recorded.states["/x/state"]["cycle"][[0, -1]]
-        assert checkpoints_of(path) == [each for each in range(1000, 60_000, 1000) if begin <= each <= end + 1]
-        assert checkpoints_of(path)
     finally:
         running.end()
+    for file in (path, snapshot):
+        begin, end = read_recording(file).states["/x/state"]["cycle"][[0, -1]]
+        before, *others = checkpoints_of(file)
+        assert begin - 1500 < before <= begin + 1000  # that which has come last, and none before the first second
+        assert others == [*range(before + 1000, int(end) + 2, 1000)]
+    result = call("replay", snapshot, "--from", f"{(begin + 700) * 1e-3:.3f}")
+    assert "note: computed from the checkpoint at" in result.output
+    assert "both runs are equal to the bit" in result.output
+    changed = call("replay", snapshot, "--from", f"{(begin + 700) * 1e-3:.3f}", "--override", 50)
+    assert "note: computed from the checkpoint at" in changed.output and "the runs part at" in changed.output
 
 
 def test_a_checkpoint_without_a_unit_is_passed_over(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ import pytest
 from click.testing import CliRunner
 from machine_support import ROOT
 from recording_support import MACHINE
+from rosbags.rosbag2 import Reader
 from small_disk import read_only, small_disk
 
 from cnc_ptp.cli import main
@@ -23,6 +24,12 @@ NO_SPACE = "No space left on device"
 @pytest.fixture
 def disk(tmp_path):
     with small_disk(tmp_path / "disk", 64) as folder:
+        yield folder
+
+
+@pytest.fixture
+def large_disk(tmp_path):
+    with small_disk(tmp_path / "disk", 4096) as folder:
         yield folder
 
 
@@ -132,16 +139,77 @@ def test_a_full_disk_leaves_what_was_recovered_before(disk, tmp_path):
         ticks(file, range(0, 2000, 10))
     output.write_text("former")
     leave(disk, 0)
-    assert f": {NO_SPACE}; " in refusal(recover, source, output)
+    assert refusal(recover, source, output) == (
+        f"P-ERR-26007 recording {output}: cannot be written: {NO_SPACE}; nothing was written"
+    )
     assert output.read_text() == "former" and len([*disk.iterdir()]) == 2
+
+
+def simulated(path, *options):
+    words = ["simulate", str(ROOT / "config" / "ptp.yaml"), "--duration", "3", "--record", str(path), *options]
+    assert CliRunner().invoke(main, words).exit_code == 0
+
+
+def told(*words):
+    """The error of a command that fails."""
+    result = CliRunner().invoke(main, [*map(str, words)])
+    assert result.exit_code == 2
+    return " ".join(result.stderr.split())
 
 
 def test_a_full_disk_leaves_what_a_replay_has_recorded_before(disk, tmp_path):
-    run, output = str(tmp_path / "run.mcap"), disk / "new.mcap"
-    words = ["simulate", str(ROOT / "config" / "ptp.yaml"), "--duration", "3", "--record", run]
-    assert CliRunner().invoke(main, words).exit_code == 0
+    run, output = tmp_path / "run.mcap", disk / "new.mcap"
+    simulated(run)
     output.write_text("former")
     leave(disk, 8)
-    result = CliRunner().invoke(main, ["replay", run, "--set", "x.getriebe.0.kv=8000", "-o", str(output)])
-    assert result.exit_code == 2 and f"{NO_SPACE}; " in result.stderr
+    assert told("replay", run, "--set", "x.getriebe.0.kv=8000", "-o", output) == (
+        f"P-ERR-26007 recording {output}: cannot be written: {NO_SPACE}; nothing was written"
+    )
     assert output.read_text() == "former" and len([*disk.iterdir()]) == 2
+
+
+def test_a_full_disk_without_a_former_file_leaves_what_was_computed(large_disk, tmp_path):
+    run, output = tmp_path / "run.mcap", large_disk / "new.mcap"
+    simulated(run)
+    leave(large_disk, run.stat().st_size * 2 // 3 // 4096)
+    text = told("replay", run, "--set", "x.getriebe.0.kv=8000", "-o", output)
+    assert text.startswith(f"P-ERR-26007 recording {output}: cannot be written at offset ")
+    assert text.endswith(f": {NO_SPACE}; recording ends here, the chunks before it stay readable")
+    assert not read_recording(output).complete
+
+
+def test_a_full_disk_has_no_room_for_checkpoints_beside_a_recording(large_disk):
+    run = large_disk / "run.mcap"
+    simulated(run, "--checkpoints", "0")
+    before = run.read_bytes()
+    leave(large_disk, 0)
+    assert told("replay", run, "--checkpoints", "1") == (
+        f"P-ERR-26007 recording {run}.checkpoints: cannot be written: {NO_SPACE}; nothing was written"
+    )
+    assert sorted(file.name for file in large_disk.iterdir()) == ["fill", "metadata.yaml", "run.mcap"]
+    assert run.read_bytes() == before
+
+
+@pytest.mark.parametrize("ending", ["csv", "parquet", "npz"])
+def test_a_full_disk_has_no_room_for_an_export(disk, tmp_path, ending):
+    run, output = tmp_path / "run.mcap", disk / f"x.{ending}"
+    simulated(run)
+    leave(disk, 1)
+    assert told("export", run, "--topic", "x/state", "-o", output) == (
+        f"P-ERR-27030 {output} cannot be written: {NO_SPACE}; the recording is unchanged"
+    )
+    assert [file.name for file in disk.iterdir()] == ["fill"]
+
+
+def test_a_recording_that_is_replaced_is_described_anew(tmp_path):
+    """Its own metadata and those beside it name the file and its messages."""
+    run, output = tmp_path / "run.mcap", tmp_path / "out" / "new.mcap"
+    output.parent.mkdir()
+    simulated(run)
+    for end in ("1", "2"):
+        words = ["replay", str(run), "--to", end, "--set", "x.getriebe.0.kv=8000", "-o", str(output)]
+        assert CliRunner().invoke(main, words).exit_code == 0
+        with Reader(output.parent) as bag:
+            counts = {each.topic: each.msgcount for each in bag.connections}
+        assert counts["/x/state"] == int(end) * 1000
+        assert sorted(file.name for file in output.parent.iterdir()) == ["metadata.yaml", "new.mcap"]

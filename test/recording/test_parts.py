@@ -67,6 +67,12 @@ def equal(one, other):
     )
 
 
+def test_plot_takes_the_file_that_describes_the_parts(parts, tmp_path):
+    words = ["plot", str(parts / "metadata.yaml"), "x/set_velocity", "-o", str(tmp_path / "a.svg")]
+    result = CliRunner().invoke(main, words)
+    assert result.exit_code == 0 and (tmp_path / "a.svg").exists(), result.output
+
+
 def refusal(call, *arguments):
     with pytest.raises(CncError) as refused:
         call(*arguments)
@@ -209,20 +215,22 @@ def test_folders_that_hold_no_recording_are_refused(tmp_path, copy):
             f"P-ERR-26014 recording {tmp_path}: a folder without a metadata.yaml of rosbag2; nothing was read, give a file "
             "of the folder"
         )
-    (copy / "run_1.mcap").unlink()
-    assert refusal(read_recording, copy) == (
-        f"P-ERR-26001 recording {copy / 'run_1.mcap'}: cannot be opened: No such file or directory; nothing was read, "
-        "check the path"
-    )
 
 
-def test_a_part_that_is_missing_is_named_without_a_metadata_file_too(copy):
-    (copy / "metadata.yaml").unlink()
+@pytest.mark.parametrize("described", [True, False])
+def test_a_part_that_is_missing_is_named(copy, described):
     (copy / "run_1.mcap").unlink()
-    text = f"recording {copy / 'run_1.mcap'}: cannot be opened: No such file or directory"
+    if not described:
+        (copy / "metadata.yaml").unlink()
     for call in (read_recording, cnc_ptp.recording.open, RunInputs):
-        assert refusal(call, copy) == f"P-ERR-26001 {text}; nothing was read, check the path"
+        for given in [copy, copy / "metadata.yaml"][: 1 + described]:
+            assert refusal(call, given) == (
+                f"P-ERR-26001 recording {copy}: its part run_1.mcap is not there; nothing was read, put it back, or "
+                "'cnc_ptp recover' makes a recording of the others"
+            )
+    text = f"recording {copy / 'run_1.mcap'}: cannot be opened: No such file or directory"
     assert f"lost: run_1.mcap: {text}" in recovered(copy, copy.with_name("saved"))[1]
+    assert read_recording(copy.with_name("saved")).missing == "run_1.mcap is missing"
 
 
 def test_a_folder_that_cannot_be_made_is_refused(tmp_path):
@@ -255,9 +263,7 @@ def test_a_folder_of_parts_is_recovered_part_by_part(parts, copy, tmp_path):
     last.write_bytes(last.read_bytes()[:-50_000])
     status, [first, *lost] = recovered(copy / "metadata.yaml", output)
     assert status == 0 and first.startswith(f"{output}: ") and len(lost) == 4
-    assert lost[0] == (
-        f"lost: run_1.mcap: recording {copy / 'run_1.mcap'}: not an MCAP file: it begins with '' instead of '\ufffdMCAP0\\r\\n'"
-    )
+    assert lost[0] == (f"lost: run_1.mcap: recording {copy / 'run_1.mcap'}: not an MCAP file: it is empty")
     assert lost[1] == f"lost: run_2.mcap: recording {copy / 'run_2.mcap'}: cannot be opened: No such file or directory"
     assert lost[2].startswith("lost: run_0.mcap: at offset ") and lost[3].startswith("lost: run_3.mcap: nothing whole ")
     assert sorted(file.name for file in output.iterdir()) == ["metadata.yaml", "saved_0.mcap", "saved_1.mcap"]

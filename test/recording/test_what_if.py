@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,16 +20,18 @@ from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.parameters import machine_text
 from cnc_ptp.plc.hli.hli import Hli
 from cnc_ptp.plc.plc_unit import PlcUnit
-from cnc_ptp.protocol.blocks import ChannelBlock, Command
+from cnc_ptp.plc.scenario import Entry
+from cnc_ptp.protocol.blocks import ChannelBlock, Command, CommandRecord
 from cnc_ptp.recording.mcap_file import McapFile
 from cnc_ptp.recording.offline_run import OfflineRun
-from cnc_ptp.recording.reader import Recorded, read_recording
-from cnc_ptp.recording.recorded_answers import CHANNEL_BLOCK
+from cnc_ptp.recording.reader import RawMessage, Recorded, read_recording
+from cnc_ptp.recording.recorded_answers import CHANNEL_BLOCK, RecordedAnswers
 from cnc_ptp.recording.run_difference import difference
 from cnc_ptp.recording.run_inputs import RunInputs
 from cnc_ptp.recording.trigger import Condition
 from cnc_ptp.recording.what_if import Change, WhatIf
 from cnc_ptp.wire.block_codec import codec_of
+from cnc_ptp.wire.stamps import Stamps
 
 SPINDLES = "examples/spindles/"
 OLD_KV = 5000
@@ -76,7 +80,7 @@ def record(run: Run, path: Path, *, every: float = 1.0) -> Recorded:
 def changed(recorded: Recorded, path: Path, change: Change) -> tuple[Recorded, str]:
     with RunInputs(recorded.path) as inputs:
         run = WhatIf(inputs, change)
-        compute(run, inputs, str(path))
+        compute(run, inputs, path)
     return read_recording(path), run.note
 
 
@@ -306,3 +310,77 @@ def delays(path: Path) -> list[tuple[int, int]]:
         }
     asked = [(request.id, block.first_cycle) for block in blocks for request in block.requests]
     return [(cycle, done[number] - cycle) for number, cycle in asked]
+
+
+def test_two_commands_that_differ_in_their_arguments_are_told_apart(tmp_path: Path) -> None:
+    """In one cycle x gets one of the recording and one of the change; the recorded one is beyond a soft limit now."""
+    (tmp_path / "move.yaml").write_text("- {at: 1.0, to: x, do: move_absolute, target: 100, velocity: 100}\n")
+    recorded = record(Run("config/ptp.yaml", scenario=str(tmp_path / "move.yaml"), seconds=2.0), tmp_path / "r.mcap")
+    for target, of_change in ((20.0, 0), (90.0, 1)):
+        move = Command("x", "move_absolute", {"target": target, "velocity": 50.0})
+        with RunInputs(recorded.path) as inputs:
+            run = WhatIf(inputs, Change(parameters=["x.kenngr.swe_pos=800000"], commands=[Entry(1.0, move)]))  # 80 mm
+            compute(run, inputs, tmp_path / "new.mcap")
+        assert ['"target": 100' in each.arguments_json for each in run.refused_of_recording] == [True]
+        assert ['"target": 90' in each.arguments_json for each in run.refused_of_change] == [True] * of_change
+
+
+class OneBlock:
+    """A recording of one block, in which a channel has given commands."""
+
+    def __init__(self, block: ChannelBlock, commands: list[CommandRecord]) -> None:
+        data = codec_of(ChannelBlock).encode(block, Stamps(0, 1_000_000))
+        self.commands, self._message = commands, RawMessage("/channel/block", CHANNEL_BLOCK, 0, data)
+
+    def messages(self, types: list[str], _first_cycle: int) -> Iterator[RawMessage]:
+        return iter([self._message] if CHANNEL_BLOCK in types else [])
+
+
+def test_of_two_equal_commands_one_may_be_that_of_the_plc() -> None:
+    stop, start = Command("s", "stop"), Command("s", "set_speed", {"rpm": 100.0})
+    records = [CommandRecord(10, each.target, each.command, each.arguments_json, True, 0, "") for each in (stop, start)]
+    answers = RecordedAnswers(OneBlock(ChannelBlock(10, 0, commands=[stop, start]), records), 0)  # type: ignore[arg-type]
+    other = replace(records[1], arguments='{"rpm": 200.0}')
+    assert [answers.gives(each) for each in (records[0], records[0], other, records[1])] == [True, False, False, True]
+
+
+def two_channels(folder: Path, scenario: str, seconds: float) -> Recorded:
+    """Channel 1 moves X to 50 for a second, channel 2 is loaded as the scenario says."""
+    (folder / "long.nc").write_text("G01 X50 F3000\nM30\n")
+    (folder / "y.nc").write_text("G01 Y20 F3000\nM30\n")
+    (folder / "story.yaml").write_text(scenario)
+    machine = Run(SPINDLES + "two_channels.yaml", str(folder / "long.nc"), str(folder / "story.yaml"), seconds=seconds)
+    return record(machine, folder / "run.mcap")
+
+
+def test_a_load_of_another_channel_leaves_the_program_that_runs_to_be_replaced(tmp_path: Path) -> None:
+    story = "- {at: 0.7, to: channel2, do: load, program: y.nc}\n- {at: 0.7, to: channel2, do: start}\n"
+    recorded = two_channels(tmp_path, story, 2.0)
+    (tmp_path / "other.nc").write_text("G01 X10 F3000\nM30\n")
+    status = what_if(
+        str(recorded.path), begin=0.5, end=3.0, parameters=(), override=None, program=str(tmp_path / "other.nc"),
+        commands=None, output=str(tmp_path / "new.mcap"), diff=False,
+    )  # fmt: skip
+    again = read_recording(tmp_path / "new.mcap")
+    assert status == 0
+    assert (again.states["/x/state"]["set_position"][-1], again.states["/y/state"]["set_position"][-1]) == (10.0, 20.0)
+    loads = [
+        (each.target, each.cycle, "X10" in each.arguments_json) for each in again.commands if each.command == "load"
+    ]
+    assert [(target, other) for target, _, other in loads] == [("channel1", True), ("channel2", False)]
+    assert loads[1][1] == 700
+
+
+@pytest.mark.parametrize("begin", [0.0, 1.8])
+def test_the_channel_that_is_loaded_next_gets_the_other_program(tmp_path: Path, begin: float) -> None:
+    """At 1.8 s both rest."""
+    story = "- {at: 2.0, to: channel2, do: load, program: y.nc}\n- {at: 2.0, to: channel2, do: start}\n"
+    recorded = two_channels(tmp_path, story, 3.0)
+    axis = "x" if begin == 0.0 else "y"
+    program = {"program": "other.nc", "text": f"G01 {axis.upper()}5 F3000\nM30"}
+    with RunInputs(recorded.path) as inputs:
+        run = WhatIf(inputs, Change(begin, program=program))
+        compute(run, inputs, tmp_path / "new.mcap")
+    assert run.replaced == ("channel1" if axis == "x" else "channel2")
+    ends = {name: read_recording(tmp_path / "new.mcap").states[f"/{name}/state"]["set_position"][-1] for name in "xy"}
+    assert ends == {"x": 50.0, "y": 20.0} | {axis: 5.0}

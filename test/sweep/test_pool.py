@@ -157,7 +157,10 @@ def test_a_scheduler_without_workers(tmp_path, scheduler, monkeypatch):
     monkeypatch.setattr(pool_module, "PATIENCE", 1.0)
     with pytest.raises(CncError) as caught:
         Pool(None, scheduler[0])
-    assert str(caught.value) == f"P-ERR-26181 scheduler {scheduler[0]} has no worker; nothing was started"
+    assert str(caught.value) == (
+        f"P-ERR-26181 scheduler {scheduler[0]} has no worker; nothing was started, start one with `dask worker "
+        f"{scheduler[0]}`"
+    )
 
 
 def _connected_to(address):
@@ -177,7 +180,22 @@ def test_a_scheduler_that_is_not_there(tmp_path, address, monkeypatch):
         Pool(None, address)
     assert time.monotonic() - started < 20.0
     assert str(caught.value).startswith(f"P-ERR-26181 scheduler {address} does not answer: ")
-    assert str(caught.value).endswith("; nothing was started")
+    assert str(caught.value).endswith(
+        "; nothing was started, start it with `dask scheduler`, or leave out --scheduler: processes of this computer "
+        "compute then"
+    )
+
+
+@pytest.mark.parametrize("scheme", ["tcp", "tls"])
+def test_a_scheduler_on_a_computer_that_nobody_knows_is_refused_at_once(scheme):
+    started = time.monotonic()
+    with pytest.raises(CncError) as caught:
+        Pool(None, f"{scheme}://no-such-computer.invalid:8786")
+    assert time.monotonic() - started < pool_module.PATIENCE
+    assert str(caught.value) == (
+        f"P-ERR-26181 scheduler {scheme}://no-such-computer.invalid:8786: no computer 'no-such-computer.invalid' is known "
+        "here; nothing was started, write its name as `getent hosts` knows it, or its address"
+    )
 
 
 def test_ctrl_c_keeps_what_is_finished_and_leaves_no_process(tmp_path):

@@ -10,7 +10,7 @@ from cnc_ptp.commands.output_file import check_output
 from cnc_ptp.commissioning.faults import BAD_OUTPUT
 from cnc_ptp.errors import CncError
 from cnc_ptp.recording.export import WRITERS, export_topic
-from cnc_ptp.recording.overwriting import replacing
+from cnc_ptp.recording.overwriting import replacing, why_not_written
 
 
 def export(
@@ -30,7 +30,7 @@ def export(
                 count = export_topic(opened, name, part, *fields, start=begin, end=end)
         except OSError as error:
             raise CncError(
-                BAD_OUTPUT, f"{output} cannot be written: {error.strerror}", "the recording is unchanged"
+                BAD_OUTPUT, f"{output} cannot be written: {why_not_written(error)}", "the recording is unchanged"
             ) from None
     print(f"{output}: {count} rows of {name}")
     if opened.missing:

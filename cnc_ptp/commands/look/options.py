@@ -36,13 +36,15 @@ def take_plot(options: dict[str, Any], more_topics: tuple[str, ...]) -> tuple[di
 
 
 def is_text(file: str) -> bool:
-    """Whether a file exists and begins as no recording does."""
+    """Whether a file exists and begins as no recording does; not that of a folder of rosbag2."""
+    from cnc_ptp.recording.bag import FILE  # YAML and MCAP only where they are needed
+
     try:
         with Path(file).open("rb") as stream:
             first = stream.read(1)
     except OSError:
         return False
-    return first != MCAP_MAGIC[:1] and not file.endswith(".mcap")
+    return first != MCAP_MAGIC[:1] and not file.endswith((".mcap", FILE))
 
 
 def require_none(options: dict[str, Any], why: str) -> None:

@@ -5,11 +5,10 @@ from __future__ import annotations
 import gc
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 from itertools import chain, islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import NamedTuple
 
 from cnc_ptp.commands.look.diff import check_diff_page, show_difference
 from cnc_ptp.commands.run.progress import RunProgress
@@ -17,9 +16,12 @@ from cnc_ptp.machine.program_files import read_file, read_program
 from cnc_ptp.machine.run_entries import load_arguments, program_search
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.plc.scenario import Entry, parse_scenario
+from cnc_ptp.protocol.blocks import CommandRecord
+from cnc_ptp.recording.new_recording import in_place_of
 from cnc_ptp.recording.offline_run import write
 from cnc_ptp.recording.origin import WITHOUT, origin
-from cnc_ptp.recording.overwriting import check_recording, replacing
+from cnc_ptp.recording.overwriting import check_recording
+from cnc_ptp.recording.parts import describe_file
 from cnc_ptp.recording.run_inputs import RunInputs
 from cnc_ptp.recording.what_if import Change, WhatIf
 from cnc_ptp.recording.writer import Recording
@@ -47,31 +49,31 @@ def what_if(
     with nothing_collected(), RunInputs(recording) as recorded, TemporaryDirectory() as folder:
         change = Change(begin, end, parameters, override, load_of(recorded, program), entries_of(recorded, commands))
         run = WhatIf(recorded, change)
-        path = output or str(Path(folder) / "what_if.mcap")
-        with replacing(path) if Path(path).exists() else nullcontext(path) as place:
-            refused = compute(run, recorded, str(place))
+        path = Path(output or Path(folder) / "what_if.mcap")
+        if path.exists():
+            with in_place_of(path) as part:
+                compute(run, recorded, part)
+            describe_file(path)
+        else:
+            compute(run, recorded, path)
         print(f"note: {run.note}" if run.note else "computed from 0 s")
         if recorded.missing:
             print(f"note: {recorded.missing}")
         if recorded.plc_file:
             print(f"note: the PLC {recorded.plc_file} is not executed again; its commands are those of the recording")
-        for text in refused.of_recording:
-            print(f"note: {text}")
-        for text in refused.of_change:
+        if len(run.machine.channels) > 1 and run.replaced:
+            print(f"note: {program} takes the place of the program of {run.replaced}")
+        for record in run.refused_of_recording:
+            print(f"note: {refusal_text(record, recorded.cycle_time_ns)}")
+        errors = [refusal_text(record, recorded.cycle_time_ns) for record in run.refused_of_change]
+        for text in [*errors, *filter(None, [run.not_replaced])]:
             print(f"error: {text}", file=sys.stderr)
         for channel in run.running:
             print(f"note: the program of {channel} has not ended; --to a later time computes more of it")
         if diff or page or output is None:
             names = (Path(recording).name, Path(output).name if output else "changed")
-            show_difference(recording, path, page, names, end=end)
-    return int(bool(refused.of_change))
-
-
-class Refused(NamedTuple):
-    """Texts of commands that were refused and had not been in the recorded run."""
-
-    of_recording: list[str]
-    of_change: list[str]
+            show_difference(recording, str(path), page, names, end=end)
+    return int(bool(run.refused_of_change or run.not_replaced))
 
 
 @contextmanager
@@ -84,10 +86,8 @@ def nothing_collected() -> Iterator[None]:
         gc.enable()
 
 
-def compute(run: WhatIf, recorded: RunInputs, path: str) -> Refused:
+def compute(run: WhatIf, recorded: RunInputs, path: Path) -> None:
     """Records the run."""
-    known = {(record.cycle, record.target, record.command) for record in recorded.commands if not record.accepted}
-    refused = Refused([], [])
     notes = {"what_if_of": recorded.path.name, **origin()}
     if run.begin:
         notes[WITHOUT] = (
@@ -104,17 +104,11 @@ def compute(run: WhatIf, recorded: RunInputs, path: str) -> Refused:
         for outputs in chain(first, blocks):
             write(recording, outputs)
             progress.show_block(outputs)
-            for record in [record for output in outputs.values() for record in output.records if not record.accepted]:
-                what = (record.cycle, record.target, record.command)
-                at = record.cycle * recorded.cycle_time_ns * 1e-9
-                text = f"{record.command} to {record.target} at {at:g} s is refused: {record.message}"
-                if what in run.given:
-                    refused.of_change.append(text)
-                elif what not in known:
-                    refused.of_recording.append(text)
-    if run.not_replaced:
-        refused.of_change.append(run.not_replaced)
-    return refused
+
+
+def refusal_text(record: CommandRecord, cycle_time_ns: int) -> str:
+    at = record.cycle * cycle_time_ns * 1e-9
+    return f"{record.command} to {record.target} at {at:g} s is refused: {record.message}"
 
 
 def load_of(recorded: RunInputs, program: str | None) -> dict[str, object] | None:
