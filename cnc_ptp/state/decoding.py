@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 from cnc_ptp.compiled.instances import bare_instance
-from cnc_ptp.state.encoding import Row, digest_of, named
+from cnc_ptp.state.encoding import FLOAT, Row, digest_of, named
 from cnc_ptp.state.faults import damaged
 from cnc_ptp.state.made_again import AGAIN, FAULTS
 from cnc_ptp.state.roots import PACKAGE, Roots, follow
@@ -175,6 +175,10 @@ class Decoder:
         del items[1 : 1 + row[2]]
         return iter(Decoder(rows, shapes, self._roots, self._texts).decode(value))
 
+    def _many_floats(self, row: Row) -> Any:
+        with refused("a list of floats", ValueError):
+            return np.frombuffer(base64.b64decode(self._text(row), validate=True), FLOAT).tolist()
+
     def _count(self, row: Row) -> Any:
         return itertools.count(*row[1:])
 
@@ -272,6 +276,7 @@ MAKE: dict[str, Any] = {
     "p": Decoder._partial,
     "i": Decoder._iterator,
     "I": Decoder._iterator_beside,
+    "N": Decoder._many_floats,
     "c": Decoder._count,
     "E": Decoder._exception,
     "g": Decoder._root,

@@ -15,6 +15,7 @@ letter of its form:
     p function, args, names   partial: function, positional arguments, dict of the others
     i items                   iterator over what is left
     I digest, taken           the same of a long list of values, which is kept beside the state: rows of its own
+    N digest                  list of very many floats, which is kept beside the state: their bytes in base64
     c next, step              itertools.count
     E class, args, attributes exception
     g path                    what a root leads to (roots.py)
@@ -49,13 +50,16 @@ from cnc_ptp.state.made_again import interpreter_parts, is_open, program_parts
 from cnc_ptp.state.roots import PACKAGE, Path, Roots, kernel_module, names_and_values
 
 Row = list[Any]
+FLOAT = "<f8"
 LONG_TEXT = 500
 """Characters from which on a text is kept beside the state, once for all states of a run."""
 LONG_LIST = 100
 """Items that are left from which on a list is kept beside the state, once for all states of a run."""
+MANY_FLOATS = 1000
+"""Floats from which on a list is kept beside the state: the times of a long program's blocks, which nobody changes."""
 LongLists = dict[int, tuple[Any, str | None]]
 """By identity: the list itself and its digest, None where it is not kept beside."""
-OF_VALUES = frozenset("ltnegFxTdabf")
+OF_VALUES = frozenset("ltnegFxTdabfN")
 """Rows whose objects nobody changes, or only their owner."""
 AS_THEY_ARE = frozenset((type(None), bool, int, float))
 Place = tuple[Any, str, Any]
@@ -124,9 +128,14 @@ class Encoder:
         self.rows.append([])
         return number
 
-    def _text(self, text: str) -> Any:
+    def _kept_beside(self, text: str) -> str:
+        """Its digest."""
         digest = digest_of(text)
         self._texts[digest] = text
+        return digest
+
+    def _text(self, text: str) -> Any:
+        digest = self._kept_beside(text)
         number = self._number.get(id(text))
         if number is None:
             number = self._new_row(text)
@@ -170,7 +179,10 @@ class Encoder:
         row += ["t", *self._values(found)]
 
     def _list(self, found: list[Any], row: Row) -> None:
-        row += ["l", *self._values(found)]
+        if len(found) >= MANY_FLOATS and {*map(type, found)} == {float}:
+            row += ["N", self._kept_beside(base64.b64encode(np.array(found, FLOAT).tobytes()).decode())]
+        else:
+            row += ["l", *self._values(found)]
 
     def _set(self, found: set[Any], row: Row) -> None:
         row += ["s", *self._values(in_order(found))]
@@ -247,8 +259,7 @@ class Encoder:
             digest = None
             if all(row[0] in OF_VALUES for row in encoder.rows):
                 text = json.dumps([value, encoder.shapes, encoder.rows], separators=(",", ":"))
-                digest = digest_of(text)
-                self._texts[digest] = text
+                digest = self._kept_beside(text)
             known = self._lists[id(items)] = items, digest
         return known[1]
 

@@ -28,6 +28,7 @@ HEADS: Final[dict[str, tuple[Any, ...]]] = {
     "p": (VALUE, VALUE, ROW),
     "i": (VALUES,),
     "I": (str, int),
+    "N": (str,),
     "c": ((int, float), VALUES),
     "E": (str, VALUE, ROW),
     "g": (list,),

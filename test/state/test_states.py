@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import json
+import math
 import random
+import struct
 
 import pytest
 from machine_support import MILL, ROOT
@@ -15,8 +18,10 @@ from cnc_ptp.parameters import load_machine
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import Command
 from cnc_ptp.state import decoding, machine_state
-from cnc_ptp.state.encoding import digest_of
+from cnc_ptp.state.decoding import Decoder
+from cnc_ptp.state.encoding import Encoder, digest_of
 from cnc_ptp.state.machine_state import StateStore
+from cnc_ptp.state.roots import Roots
 
 SPINDLES, FIGURES = "examples/spindles/", "examples/figures/"
 RUNS = [
@@ -267,6 +272,29 @@ def test_blocks_of_a_long_program_are_kept_once_beside_the_states() -> None:
             assert refusal(wrong, state) == (
                 f"P-ERR-26151 checkpoint: the state is damaged: {reason}; nothing was restored"
             )
+
+
+def test_very_many_floats_are_kept_beside_the_state_to_the_bit(monkeypatch: pytest.MonkeyPatch) -> None:
+    numbers = [math.nan, -0.0, math.inf, 5e-324, *(place / 3 for place in range(1000))]
+    roots, texts = Roots({}), dict[str, str]()
+    encoder = Encoder(roots, texts)
+    value = encoder.encode([numbers, numbers, numbers[:999], [*numbers[1:], 1]])
+    written = json.dumps(encoder.rows)
+    one, same, few, mixed = Decoder(json.loads(written), encoder.shapes, roots, texts).decode(value)
+    assert one is same and struct.pack("1004d", *one) == struct.pack("1004d", *numbers)
+    assert struct.pack("999d", *few) == struct.pack("999d", *numbers[:999])
+    assert mixed == [*numbers[1:], 1] and type(mixed[-1]) is int
+    [digest] = texts
+    for wrong, why in (
+        ("AAAA", "buffer size must be a multiple of element size"),
+        ("?", "Only base64 data is allowed"),
+    ):
+        monkeypatch.setattr(decoding, "digest_of", lambda _: digest)
+        with pytest.raises(CncError) as refused:
+            Decoder(json.loads(written), encoder.shapes, roots, {digest: wrong}).decode(value)
+        assert str(refused.value) == (
+            f"P-ERR-26151 checkpoint: the state is damaged: a list of floats: {why}; nothing was restored"
+        )
 
 
 WRONG_LISTS = {
