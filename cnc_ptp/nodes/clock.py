@@ -8,12 +8,12 @@ from collections.abc import Iterable
 from typing import Any
 
 import click
-from rclpy.serialization import deserialize_message
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import node_command_line, process
+from cnc_ptp.nodes.convert import message_of
 from cnc_ptp.nodes.drive_watch import FAREWELL, DriveWatch
 from cnc_ptp.nodes.free_run import FreeRunPace
 from cnc_ptp.nodes.handover import Handover
@@ -234,7 +234,7 @@ class ClockNode(PollingNode):
 
     def _take_heartbeat(self, data: bytes) -> None:
         """With the blocks, so that whoever lives has been heard before the silent ones are looked for."""
-        self._on_heartbeat(deserialize_message(data, msg.BlockReport))
+        self._on_heartbeat(message_of(data, msg.BlockReport))
 
     def _on_heartbeat(self, message: msg.BlockReport) -> None:
         self._watchdog.heard(message.source)

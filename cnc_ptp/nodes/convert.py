@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 from builtin_interfaces.msg import Time
+from rclpy.serialization import deserialize_message
 
 from cnc_ptp import msg
-from cnc_ptp.protocol.blocks import ChannelOffsets, CommandRecord, Event, EventValue, HandshakeRequest, read_values
+from cnc_ptp.errors import Value
+from cnc_ptp.protocol.blocks import ChannelOffsets, CommandRecord, Event, EventValue, HandshakeRequest
 from cnc_ptp.protocol.event_values import ROLES, read_event_values
+from cnc_ptp.wire.unreadable import unreadable
+
+
+def message_of(data: bytes, message_type: Any) -> Any:
+    """Raises CncError 26184 for bytes that are no such message."""
+    try:
+        return deserialize_message(data, message_type)
+    except Exception as error:  # as many types as middlewares have
+        raise unreadable(message_type.__name__, data, error) from error
 
 
 def record_to_message(record: CommandRecord, stamp: Time) -> msg.CommandRecord:
@@ -36,8 +48,17 @@ def _value_to_message(value: EventValue) -> msg.EventValue:
 
 def message_to_record(message: msg.CommandRecord) -> CommandRecord:
     fields = {name: getattr(message, name) for name in _names(msg.CommandRecord)}
-    values = read_values(fields.pop("values_json"))
+    values = _values_of(fields.pop("values_json"))
     return CommandRecord(arguments=fields.pop("arguments_json"), values=values, **fields)
+
+
+def _values_of(values_json: str) -> dict[str, Value]:
+    """None where a foreign message has no JSON object there."""
+    try:
+        values = json.loads(values_json) if values_json else {}
+    except (ValueError, RecursionError):
+        return {}
+    return values if isinstance(values, dict) else {}
 
 
 def message_to_event(message: msg.Event) -> Event:

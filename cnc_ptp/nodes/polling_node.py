@@ -8,9 +8,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from typing import Any
 
+from rcl_interfaces.msg import ParameterType
+from rcl_interfaces.srv import SetParameters, SetParametersAtomically
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
 
@@ -18,6 +22,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.wire.unreadable import UNREADABLE_MESSAGE
 
 Received = Callable[[bytes], None]
+KNOWN_TYPES = {of.value for of in Parameter.Type}
 
 
 class PollingNode(Node):
@@ -64,6 +69,12 @@ class PollingNode(Node):
             self._unreadable.add(topic)
             self.tell_unreadable(f"{self.get_name()}: topic {topic}: {error.message}")
 
+    def create_service(self, srv_type: Any, srv_name: str, callback: Any, **options: Any) -> Any:
+        """As Node. Those of rclpy for parameters would end the node with a value whose type there is not."""
+        if srv_type in (SetParameters, SetParametersAtomically):
+            callback = partial(of_known_types, callback)
+        return super().create_service(srv_type, srv_name, callback, **options)
+
     def tell_unreadable(self, text: str) -> None:
         """To those that look at the node's log; units make an event of it."""
         self.get_logger().warning(f"P-WARN-{UNREADABLE_MESSAGE} {text}")
@@ -84,6 +95,14 @@ class PollingNode(Node):
     def take_inputs(self) -> None:
         """The same for those of `poll_input`, now."""
         take_all(self._inputs_polled)
+
+
+def of_known_types(set_parameters: Callable[[Any, Any], Any], request: Any, response: Any) -> Any:
+    """A value of another type than rclpy knows is one that is not set."""
+    for each in request.parameters:
+        if each.value.type not in KNOWN_TYPES:
+            each.value.type = ParameterType.PARAMETER_NOT_SET
+    return set_parameters(request, response)
 
 
 def take_all(polled: Mapping[Subscription[Any], Received]) -> None:

@@ -5,9 +5,13 @@ from functools import partial
 
 import pytest
 import rclpy
+from diagnostic_msgs.msg import DiagnosticArray
 from graph_support import MILL, PTP, run
 from long_support import long
+from rcl_interfaces.msg import Log, Parameter, ParameterValue
+from rcl_interfaces.srv import SetParameters, SetParametersAtomically
 from rclpy.node import Node
+from rclpy.qos import qos_profile_rosout_default
 from recording_support import Blocks
 from spin_support import spin_until
 
@@ -20,9 +24,13 @@ from cnc_ptp.nodes.recorder import RecorderNode
 from cnc_ptp.nodes.topics import (
     BLOCKS,
     CHECKPOINTS,
+    COMMAND,
+    DIAGNOSTICS,
     DRIVE_STOPS,
     EVENT,
     EVENTS,
+    LATENESS,
+    PLC_INPUT,
     REPORT,
     STATES_OF_UNITS,
     TICK,
@@ -187,6 +195,51 @@ def test_states_that_no_unit_has_sent_are_left_out(around, tmp_path):
     with RunInputs(path) as recorded:
         assert [name for name in recorded._attachments if name.startswith("checkpoint/")] == ["checkpoint/10/x"]
         assert [*recorded.checkpoint_texts().values()] == ["a program"]
+
+
+def test_bytes_that_are_no_messages_do_not_end_a_recorder(around, tmp_path):
+    """Found by mutated inputs, seed 430: without the recorder everything stops."""
+    path = tmp_path / "a.mcap"
+    outside, recorder, spin_until = around(lambda: RecorderNode(read_machine(str(PTP)), str(path), PTP.read_text()))
+    foreign = [
+        outside.create_publisher(of, topic, quality)
+        for topic, of, quality in (
+            (CHECKPOINTS, msg.UnitCheckpoint, STATES_OF_UNITS),
+            (DRIVE_STOPS, msg.DriveStop, EVENTS),
+            (DIAGNOSTICS, DiagnosticArray, PLC_INPUT),
+            (LATENESS, msg.LatenessHistogram, PLC_INPUT),
+            ("/rosout", Log, qos_profile_rosout_default),
+        )
+    ]
+    commands = outside.create_publisher(msg.CommandRecord, COMMAND, EVENTS)
+    spin_until(lambda: all(each.get_subscription_count() for each in (*foreign, commands, outside.ticks)))
+    outside.ticks.publish(msg.CycleTick(first_cycle=0, count=10))
+    spin_until(lambda: recorder._last_tick == 0)
+    for each in foreign:
+        each.publish(b"\x00\x01\x00\x00\x07")
+    for values in ("[1]", "{", "[" * 3000):
+        commands.publish(msg.CommandRecord(target="x", command="move", values_json=values))
+    foreign[0].publish(msg.UnitCheckpoint(unit="x", texts_json="[" * 3000))
+    spin_until(lambda: len(recorder._unreadable) == len(foreign))
+    outside.ticks.publish(msg.CycleTick(first_cycle=10, count=10))
+    spin_until(lambda: recorder._last_tick == 10)
+    assert recorder.failure is None
+    recorder.destroy_node()
+    assert [record.values for record in read_recording(path).commands] == [{}] * 3
+
+
+@pytest.mark.parametrize("service", [SetParameters, SetParametersAtomically])
+def test_a_parameter_of_a_type_that_there_is_not(around, service):
+    """Found by mutated inputs, seed 430: rclpy's own service would end the node."""
+    _, clock, _ = around(lambda: ClockNode(read_machine(str(PTP))))
+    asked = next(each for each in clock.services if each.srv_type is service)
+    for kind in (10, 77, 255):
+        value = ParameterValue(type=kind)
+        answer = asked.callback(
+            service.Request(parameters=[Parameter(name="use_sim_time", value=value)]), service.Response()
+        )
+        result = answer.results[0] if service is SetParameters else answer.result
+        assert not result.successful and result.reason
 
 
 def test_a_fault_in_the_last_block_fails_the_run(around):

@@ -9,12 +9,12 @@ from functools import partial
 from typing import Any
 
 from rclpy.qos import QoSProfile, QoSReliabilityPolicy
-from rclpy.serialization import deserialize_message
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.command_files import with_table
 from cnc_ptp.nodes import process
+from cnc_ptp.nodes.convert import message_of
 from cnc_ptp.nodes.topics import COMMAND, COUPLING_SERVICES
 from cnc_ptp.nodes.unit.requests import RUN_OVER, given_arguments
 from cnc_ptp.nodes.unit.unit_node import UnitNode
@@ -102,7 +102,7 @@ class CouplingServices:
         """Ids count per sender, and couplings of axes come from the PLC alone."""
         if not self._open:
             return
-        record = deserialize_message(data, msg.CommandRecord)
+        record = message_of(data, msg.CommandRecord)
         for call in self._open:
             asked = call.command
             if asked.id and (asked.id, asked.target, asked.command) == (record.id, record.target, record.command):
