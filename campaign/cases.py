@@ -35,7 +35,7 @@ TAPPING = "G63 Z-100 F500 S400\nM30\n"
 
 
 class Link(NamedTuple):
-    """A slave that follows the actual or set values of its master."""
+    """A slave that follows the actual or set values of its master, or an axis its spindle: mm for each deg then."""
 
     master: str
     slave: str
@@ -72,7 +72,7 @@ CASES = (
     Case("coupled", CONFIG / "ptp.yaml", 10.0, scenario=COUPLED, links=(Link("x", "y", 0.75), Link("y", "z", -0.5))),
     Case("gantry", CONFIG / "gantry.yaml", 10.0, scenario=GANTRY, links=(Link("x", "y", 1.0),)),
     Case("thread", CONFIG / "lathe.yaml", 20.0, THREAD),
-    Case("tapping", CONFIG / "mill.yaml", 10.0, TAPPING),
+    Case("tapping", CONFIG / "mill.yaml", 10.0, TAPPING, links=(Link("s", "z", -1.25 / 360.0),)),
     Case("gears", SPINDLES / "gears.yaml", 7.0, SPINDLES / "gears.nc", SPINDLES / "gears_plc.yaml"),
 )
 

@@ -8,7 +8,7 @@ import re
 import signal
 import time
 from collections.abc import Iterator
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
@@ -19,6 +19,7 @@ import psutil
 from campaign import motion
 from campaign.cases import CASES, Case
 from campaign.graph import SERVER, SUPERVISOR, Graph, free_domain
+from campaign.witness import Witness
 from cnc_ptp.errors import CncError
 from cnc_ptp.nodes.forked import SERVER_ENDED
 from cnc_ptp.parameters import read_machine
@@ -95,13 +96,18 @@ def run(fault: Fault, folder: Path, *, domain: int) -> Row:
     case = next(each for each in CASES if each.name == fault.case)
     row = Row(fault, load=os.getloadavg()[0])
     recording = folder / "run.mcap"
-    graph = Graph(case.words(folder), recording, domain=domain)
-    try:
+    machine = read_machine(str(case.machine))
+    graph, witness = Graph(case.words(folder), recording, domain=domain), None
+    with ExitStack() as stack:
+        stack.callback(graph.end)
         if not graph.wait_for_start():
             row.problems.append(f"the run did not start: {graph.output[-300:]}")
             return row
         begin = time.monotonic()
-        time.sleep(max(0.0, fault.moment))
+        if fault.node == "recorder":
+            witness = stack.enter_context(Witness(case.machine, folder / "seen.npz", domain))
+            witness.wait()
+        time.sleep(max(0.0, begin + fault.moment - time.monotonic()))
         if not graph.running:
             row.outcome = "over"
             return row
@@ -111,10 +117,10 @@ def run(fault: Fault, folder: Path, *, domain: int) -> Row:
         row.seconds = round(time.monotonic() - happened, 2)
         row.problems += left_behind(graph, fault, row.outcome)
         computed = happened - begin - lateness_before(fault, graph.lateness)
-        written = int(computed * 1e6 / read_machine(str(case.machine)).cycle_time_us)
+        written = int(computed * 1e6 / machine.cycle_time_us)
         check_recording(row, case, recording, written)
-    finally:
-        graph.end()
+        if witness is not None:
+            row.problems += (f"seen: {text}" for text in motion.problems(witness.seen(), machine, ended=True))
     return row
 
 
@@ -199,6 +205,7 @@ def check_recording(row: Row, case: Case, recording: Path, written: int) -> None
     stopped_in = {fault.node} if fault.signal == HOLD else set()
     row.problems += motion.problems(recorded, machine, ended=not of_recorder, stopped_in=stopped_in)
     row.problems += motion.violations(recording)
+    row.problems += motion.out_of_step(recorded, case.links, machine)
     row.own_stops = {stop.unit: len(stop.actual_position) for stop in recorded.drive_stops}
     check_links(row, case, recorded)
     row.problems += not_retracted(recorded)

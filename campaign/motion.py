@@ -5,9 +5,9 @@ The checks are their own: differences of recorded values, no formula of the kern
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +15,7 @@ import numpy.typing as npt
 from campaign.cases import Link
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import MachineParameters
+from cnc_ptp.protocol.blocks import Severity
 from cnc_ptp.recording.motion_check.check import check_recording
 from cnc_ptp.recording.motion_check.inputs import NO_SETPOINTS
 from cnc_ptp.recording.reader import Recorded
@@ -26,6 +27,8 @@ OF_ACTUAL = 1.15
 """Actual values may exceed the acceleration of the set values by so much: a controller that catches up."""
 RPM = 6.0
 """deg/s"""
+IN_STEP = 0.01
+"""deg; of the set values of a thread."""
 
 
 class Track(NamedTuple):
@@ -120,38 +123,84 @@ def torn(
 ) -> tuple[float, float]:
     """How far actual positions of a master and its slave have left their relation, and how far they may, mm (deg).
 
-    Somebody that is lost is noticed with the next block or the one after it: until then the others go on. Then each
-    brakes on its own ramp (P-AXIS-00002): with a factor other than 1 their distances differ. A drive that brakes on its
-    own does not catch up with its setpoints, while the other one does. A master that is a slave itself, by the link
-    `above`, may also come to rest on the ramp of its own master.
+    Each may be behind its setpoints. Somebody that is lost is noticed with the next block or the one after it: until
+    then the others go on. Then each brakes on its own ramp (P-AXIS-00002): with a factor other than 1 their distances
+    differ. A master that is a slave itself, by the link `above`, may also come to rest on the ramp of its own master.
+    A spindle has another ramp than the axis that follows it: one of them may be at rest at once.
     """
     found = tracks(recorded)
     master, slave = found[link.master], found[link.slave]
     count = max(len(master.actual_position), len(slave.actual_position))
     leads, follows = (held(each.actual_position, count) for each in (master, slave))
     apart = follows - follows[0] - link.factor * (leads - leads[0])
-    fastest = max(np.abs(slave.actual_velocity).max(), abs(link.factor) * np.abs(master.actual_velocity).max())
-    before = min(len(master.cycles), len(slave.cycles))
-    lag = np.abs(apart[:before]).max(initial=0.0) if before else 0.0
-    behind = abs(link.factor) * largest_lag(master, before) if slave.own_stop else 0.0
-    reaction = (2 * machine.block_cycles + 1) * machine.cycle_time_us * 1e-6
+    factor = abs(link.factor)
+    fastest = max(np.abs(slave.actual_velocity).max(), factor * np.abs(master.actual_velocity).max())
+    lag = largest_lag(slave) + factor * largest_lag(master)
     leading = [longest_ramp(master, link.master, machine)]
     if above is not None:
         leading.append(abs(above.factor) * longest_ramp(found[above.master], above.master, machine))
     following = longest_ramp(slave, link.slave, machine)
-    ramps = max(abs(abs(link.factor) * ramp - following) for ramp in leading)
-    return float(np.abs(apart).max()), float(lag + behind + fastest * reaction + ramps)
+    if link.master in machine.spindles:
+        ramps = max(factor * leading[0], following)
+    else:
+        ramps = max(abs(factor * ramp - following) for ramp in leading)
+    return float(np.abs(apart).max()), float(lag + fastest * reaction(machine) + ramps)
 
 
-def largest_lag(track: Track, count: int) -> float:
-    """The largest following error of the first cycles, mm (deg)."""
-    count = min(count, len(track.actual_position))
+def reaction(machine: MachineParameters) -> float:
+    """Seconds of machine time in which somebody goes on without one that is lost: two blocks and a cycle."""
+    return (2 * machine.block_cycles + 1) * machine.cycle_time_us * 1e-6
+
+
+def out_of_step(recorded: Recorded, links: Sequence[Link], machine: MachineParameters) -> Iterator[str]:
+    """Axes that have left the angle of their spindle, by set values, as far as both are recorded.
+
+    Tapping by the `links` of spindles: both follow set values. Without one by the phase of threads, whose axis follows
+    the actual angle. Nothing but rounding is permitted until the first fault, then what the spindle turns until it is
+    noticed.
+    """
+    found = tracks(recorded)
+    tapping = [link for link in links if link.master in machine.spindles and {link.master, link.slave} <= {*found}]
+    for link in tapping:
+        spindle, axis = found[link.master], found[link.slave]
+        count = min(len(spindle.cycles), len(axis.cycles))
+        turned, moved = (each.set_position[:count] - each.set_position[0] for each in (spindle, axis))
+        yield from steps_left(
+            link.slave, spindle, spindle.cycles[:count], turned - moved / link.factor, recorded, machine
+        )
+    names = {spindle.number: name for name, spindle in machine.spindles.items()}
+    for rows in () if tapping else recorded.threads.values():
+        followed = rows[~np.isnan(rows["set_phase_error_deg"])]
+        for number in set(followed["spindle"].tolist()):
+            spindle, errors = found[names[number]], followed["set_phase_error_deg"]
+            yield from steps_left("thread", spindle, followed["cycle"], errors, recorded, machine)
+
+
+def steps_left(
+    name: str, spindle: Track, cycles: Any, errors: Values, recorded: Recorded, machine: MachineParameters
+) -> Iterator[str]:
+    """What is wrong with distances from the angle of a spindle, deg."""
+    faults = [event.cycle for event in recorded.events if event.severity == Severity.ERROR]
+    before = cycles < min(faults, default=np.inf)
+    turning = float(np.abs(spindle.set_velocity).max(initial=0.0)) * reaction(machine)
+    for which, permitted in ((before, IN_STEP), (~before, IN_STEP + turning)):
+        apart = np.abs(errors[which]).max(initial=0.0)
+        if apart > permitted:
+            yield f"{name}: {apart:.3f} deg out of step with its spindle, {permitted:.3f} permitted"
+
+
+def largest_lag(track: Track) -> float:
+    """The largest following error while setpoints came, mm (deg)."""
+    count = min(len(track.cycles), len(track.actual_position) - track.own_stop)
     return float(np.abs(track.set_position[:count] - track.actual_position[:count]).max(initial=0.0))
 
 
-def longest_ramp(track: Track, axis: str, machine: MachineParameters) -> float:
-    """Distance of a stop from the largest velocity with the deceleration and the jerk of the axis, mm (deg)."""
-    velocity, own = float(np.abs(track.actual_velocity).max()), machine.axes[axis]
+def longest_ramp(track: Track, unit: str, machine: MachineParameters) -> float:
+    """Distance of a stop from the largest velocity, with deceleration and jerk of an axis, of a spindle in its gear."""
+    velocity = float(np.abs(track.actual_velocity).max())
+    if unit in machine.spindles:
+        return 0.5 * velocity**2 / min(gear.max_acceleration for gear in machine.spindles[unit].gears.values())
+    own = machine.axes[unit]
     return 0.5 * velocity**2 / own.deceleration + 0.5 * velocity * own.deceleration / own.jerk
 
 

@@ -68,7 +68,8 @@ def _require_inside(event: str, path: Any, folder: int = -1) -> None:
         found = os.path.realpath(name)  # where links lead; other events concern the link itself
     else:
         found = os.path.join(os.path.realpath(os.path.dirname(name)), os.path.basename(name))
-    if not f"{found}{os.sep}".startswith(_folder[-1]) and name not in HARMLESS:
+    within = _folder[-1:]  # none if the input of another thread has ended meanwhile
+    if within and not f"{found}{os.sep}".startswith(within[0]) and name not in HARMLESS:
         _refuse(f"{event} {name}")
 
 

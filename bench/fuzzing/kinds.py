@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from pathlib import Path
 
-from bench.fuzzing import command_line, messages, programs, recordings, texts, web_messages
+from bench.fuzzing import command_line, doors, messages, programs, recordings, texts, web_messages
 from bench.fuzzing.engine import Kind, Target
 
 
@@ -31,7 +31,9 @@ KINDS = {
         *(Kind(name, prepare, 40) for name, prepare in recordings.kinds().items()),
         Kind("checkpoint", recordings.checkpoints, 15),
         Kind("block", messages.blocks, 300),
-        Kind("topic", messages.topics, 300),
+        Kind("topic", doors.topics, 200),
+        Kind("service", doors.services, 150),
+        Kind("goal", doors.goals, 60),
         Kind("command", messages.commands, 60),
         Kind("function-block", messages.function_blocks, 100),
         Kind("command-line", command_line.command_lines, 12),

@@ -1,4 +1,4 @@
-"""Messages below DDS: bytes for the decoders of the nodes, requests of services, and the commands that they stand for.
+"""Messages without nodes: bytes for their decoders, and the commands that requests and goals stand for.
 
 The invariants of checked_machine.py hold for whatever comes.
 """
@@ -8,11 +8,9 @@ from __future__ import annotations
 import json
 import math
 import random
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
-
-from rclpy.serialization import serialize_message
 
 from bench.checked_machine import CheckedMachine
 from bench.fuzzing.engine import Broken, Draw, Target
@@ -20,13 +18,9 @@ from bench.fuzzing.mutation import HUGE, mutated_bytes, wild
 from bench.jobs import ROOT
 from cnc_ptp.errors import CncError
 from cnc_ptp.nodes.bridge.function_blocks import given_inputs
-from cnc_ptp.nodes.bridge.hli.hli_topics import ControlTopic, control_reader
-from cnc_ptp.nodes.bridge.value_topics import ValueTopics
-from cnc_ptp.nodes.plc_bridge import largest_overrides
-from cnc_ptp.nodes.topics import BLOCK_CLASSES, HLI_CONTROL, PLC_TOPICS, SERVICES, VALUE_TOPICS
+from cnc_ptp.nodes.topics import BLOCK_CLASSES, SERVICES
 from cnc_ptp.nodes.unit.requests import given_arguments, objection
 from cnc_ptp.parameters import MachineParameters, read_machine
-from cnc_ptp.plc.hli.hli import Hli
 from cnc_ptp.protocol.blocks import Command
 from cnc_ptp.protocol.commands import COMMANDS, Argument
 from cnc_ptp.wire.block_codec import codec_of, encode_block, has_plain_header, head_of
@@ -276,88 +270,3 @@ def blocks(_folder: Path) -> Target:
 
     assert {of for of, _ in sent} == {*BLOCK_CLASSES.values(), type(None)}
     return Target(make, call)
-
-
-def topics(_folder: Path) -> Target:
-    """Topics of an external PLC: values and HLI, as bytes, with blocks in between."""
-    parameters = read_machine(ROOT / MACHINES[0])
-    running: list[CheckedMachine] = []
-    receivers: dict[str, Callable[[bytes], None]] = {}
-    warned: list[tuple[int, str]] = []
-
-    def renew() -> None:
-        running[:] = [new_machine(parameters)]
-        plc, kinds = running[0].plc, running[0].kinds
-        values = ValueTopics(parameters, plc, lambda number, text: warned.append((number, text)))
-        hli = Hli(plc, kinds=kinds, largest_overrides=largest_overrides(parameters), timeout=1.0, numbers={})
-        for unit, kind in kinds.items():
-            for name in PLC_TOPICS.get(kind, {}):
-                if name in VALUE_TOPICS:
-                    receivers[f"{unit} {name}"] = values.receiver(unit, name)
-        for unit, control in hli.objects.items():
-            receivers[f"{unit} hli"] = ControlTopic(control, control_reader(control.kind)).receive
-
-    def sent(topic: str, draw: random.Random) -> bytes:
-        unit, name = topic.split()
-        of = HLI_CONTROL[running[0].kinds[unit]] if name == "hli" else VALUE_TOPICS[name]
-        message = of()
-        fill(message, draw)
-        message.header.frame_id = draw.choice(("plc", "", "other", "x" * draw.choice((1, 7, 300))))
-        return bytes(serialize_message(message))
-
-    def make(draw: Draw) -> tuple[str, bytes, bool]:
-        topic = draw.choice([*receivers])
-        data = sent(topic, draw)
-        return topic, data if draw.random() < 0.5 else mutated_bytes(data, draw), draw.number % 4 == 0
-
-    def call(given: tuple[str, bytes, bool]) -> None:
-        topic, data, then_time = given
-        try:
-            receivers[topic](data)
-        finally:
-            if then_time:
-                computed(running[0])
-
-    renew()
-    return Target(make, call, renew=renew, lasts=LASTS)
-
-
-def fill(message: Any, draw: random.Random) -> None:
-    """Numbers and switches of a message, those of nested ones too: half of them plausible."""
-    for name, of in message.get_fields_and_field_types().items():
-        value = getattr(message, name)
-        if name == "header":
-            continue
-        if hasattr(value, "get_fields_and_field_types"):
-            fill(value, draw)
-        elif of == "boolean":
-            setattr(message, name, draw.random() < 0.6)
-        elif of in ("double", "float"):
-            setattr(
-                message,
-                name,
-                draw.choice(
-                    (
-                        0.0,
-                        1.0,
-                        50.0,
-                        100.0,
-                        -1.0,
-                        1000.0,
-                        math.nan,
-                        math.inf,
-                        -math.inf,
-                        1e300 if of == "double" else 1e38,
-                    )
-                ),
-            )
-        elif of.startswith(("uint", "int")) and "[" not in of:
-            bits, signed = int(of.removeprefix("u").removeprefix("int")), of.startswith("int")
-            largest = 2 ** (bits - signed) - 1
-            setattr(
-                message,
-                name,
-                draw.choice(
-                    (0, 1, 2, 3, min(largest, 1000), draw.randrange(1, 40), largest, largest - 1, -1 if signed else 0)
-                ),
-            )

@@ -14,17 +14,32 @@ import pytest
 from click.testing import CliRunner
 
 from bench import fuzz
-from bench.fuzzing import engine, messages, web_messages
+from bench.fuzzing import doors, engine, messages, web_messages
 from bench.fuzzing.engine import Broken, Draw, Kind, Target, Verdict, attempt, objection, run
+from bench.fuzzing.graph import ACTION, SERVICE, TOPIC, Goal, Graph
 from bench.fuzzing.guard import guarded
 from bench.fuzzing.kinds import KINDS
 from bench.fuzzing.recordings import both
+from cnc_ptp import srv
 from cnc_ptp.errors import CncError
+from cnc_ptp.nodes.access_policy import PARAMETER_EVENTS, ROSOUT, external_plc_access, machine_access
+from cnc_ptp.nodes.topics import DRIVE_STOPS, TICK, block_topic
+from cnc_ptp.parameters import read_machine
 
 SEED = 1
 
 
-@pytest.mark.parametrize("kind", KINDS.values(), ids=[*KINDS])
+THROUGH_NODES = pytest.mark.motion_unchecked("what the recorder does not get: commands that explain a jump")
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [
+        pytest.param(kind, marks=[THROUGH_NODES] if name in ("topic", "service", "goal") else [])
+        for name, kind in KINDS.items()
+    ],
+    ids=[*KINDS],
+)
 def test_mutated_inputs_are_taken_as_documented(kind, tmp_path):
     verdict = run(kind, SEED, kind.daily, tmp_path)
     assert not verdict.findings, "\n".join(map(str, verdict.findings))
@@ -41,6 +56,81 @@ def test_every_byte_has_its_number(tmp_path):
             assert given == form[:place]
         else:
             assert [at for at in range(len(form)) if form[at] != given[at]] == [place]
+
+
+# nodes
+
+
+def test_no_door_of_a_node_is_left_out(tmp_path):
+    """By the access policy. Ticks and blocks are handed over in one process: the kind `block` has them."""
+    machine = read_machine(str(doors.MACHINE))
+    graph = Graph(doors.MACHINE, tmp_path)
+    nodes = {node.get_name() for node in graph.nodes}
+    graph.close()
+    names = {}
+    for kind, node, name in graph.inputs:
+        names.setdefault((kind, node), set()).add(name)
+    handed_over = {TICK, DRIVE_STOPS, *map(block_topic, graph.units)}
+    for access in machine_access(machine):
+        if access.name in nodes:
+            read = {name.removeprefix("/") for name in access.subscribe}
+            found = names.get((TOPIC, access.name), set())
+            assert found <= read and read - found <= handed_over, access.name
+            assert names.get((SERVICE, access.name), set()) == access.reply
+            assert names.get((ACTION, access.name), set()) == access.execute
+    written = external_plc_access(machine).publish - {ROSOUT, PARAMETER_EVENTS}
+    assert written <= names[TOPIC, "plc"]
+    assert {DRIVE_STOPS, "checkpoints"} <= names[TOPIC, "recorder"]
+
+
+@pytest.fixture
+def graph(tmp_path):
+    graph = Graph(doors.MACHINE, tmp_path)
+    yield graph
+    graph.close()
+
+
+def test_what_ends_a_node_or_changes_a_unit_is_found(graph, monkeypatch):
+    stop = graph.inputs[SERVICE, "x", "x/stop"]
+    refused = graph.call(graph.inputs[SERVICE, "x", "x/move_absolute"], srv.MoveAbsolute.Request())
+    assert (refused.accepted, refused.error_id) == (False, 22001)
+    with pytest.raises(CncError):
+        graph.check()
+    graph.check()
+
+    def ends(*_):
+        raise CncError(26267, "its drive has stopped")
+
+    monkeypatch.setattr(stop.receive, "callback", ends)
+    with pytest.raises(Broken, match="the node would end: P-ERR-26267"):
+        graph.call(stop, stop.type.Request())
+    graph.units["x"].failure = CncError(26267, "its drive has stopped")
+    with pytest.raises(Broken, match="node x would end: P-ERR-26267"):
+        graph.check()
+
+
+def test_a_refusal_that_changes_a_unit_is_found(graph, monkeypatch):
+    move = graph.inputs[SERVICE, "x", "x/power"]
+    carried_out = move.receive.callback
+
+    def says_no(request, response):
+        carried_out(request, response)
+        response.accepted, response.error_id, response.message = False, 22001, "refused; nothing was changed"
+        return response
+
+    monkeypatch.setattr(move.receive, "callback", says_no)
+    graph.call(move, move.type.Request(enabled=False))
+    with pytest.raises(Broken, match="a refusal has changed something: refused; nothing was changed"):
+        graph.check()
+
+
+def test_a_goal_that_ends_twice_is_found():
+    goal = Goal(None)
+    with pytest.raises(Broken, match="nobody has canceled"):
+        goal.canceled()
+    goal.succeed()
+    with pytest.raises(Broken, match="a goal ends twice"):
+        goal.abort()
 
 
 # the engine finds what it is there for
@@ -213,9 +303,10 @@ def test_a_finding_names_the_first_input_of_its_state(tmp_path):
     assert again == finding
 
 
-@pytest.mark.parametrize("name", ["command", "function-block", "topic", "web"])
+@THROUGH_NODES
+@pytest.mark.parametrize("name", ["command", "function-block", "service", "web"])
 def test_a_state_is_as_new_at_its_first_input(name, monkeypatch, tmp_path):
-    for module in (messages, web_messages):
+    for module in (doors, messages, web_messages):
         monkeypatch.setattr(module, "LASTS", 4)
     told = [outcomes(KINDS[name].prepare(tmp_path), range(first, 8)) for first in (0, 4)]
     assert told[0][4:] == told[1]

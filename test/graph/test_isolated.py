@@ -97,6 +97,8 @@ def test_nobody_joins_and_the_doors_are_open(isolated, ros_domain):
     status = subprocess.run(inside(*command("status")), capture_output=True, text=True, check=False)
     assert status.returncode == 0, status.stderr
     assert [line for line in status.stdout.splitlines() if line.startswith("x ")]
+    moving = command("do", "x", "move_absolute", "target=4")
+    assert subprocess.run(inside(*moving), capture_output=True, check=False).returncode == 0
     folder = subprocess.run(inside("pwd"), capture_output=True, text=True, check=True)
     assert folder.stdout.strip() == os.getcwd()
     # a second one
@@ -114,7 +116,7 @@ def test_nobody_joins_and_the_doors_are_open(isolated, ros_domain):
         pages.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         pages.bind(("127.0.0.1", port))
     moved = [record for record in read_recording(recording).commands if record.target == "x"]
-    assert [record.command for record in moved if record.command != "stop"] == ["move_absolute"]
+    assert [record.command for record in moved if record.command != "stop"] == ["move_absolute"] * 2
 
 
 def test_nothing_to_enter(ros_domain):

@@ -95,11 +95,11 @@ def test_a_stop_that_nobody_obeys_is_a_violation(monkeypatch: pytest.MonkeyPatch
 
 def test_an_axis_in_error_that_does_not_brake_is_a_violation() -> None:
     machine = moving_machine()
-    output = machine.tick()
-    block = output["c"].block
+    blocks = {name: output.block for name, output in machine.tick().items()}
+    block = blocks["c"]
     assert isinstance(block, AxisBlock)
     block.state = [S.ERROR_STOP] * block.count
-    machine.check_owners(output)
+    machine.check_owners(blocks)
     assert machine.violations == ["seed 7 cycle 310: c does not brake in ErrorStop, at 20"]
 
 
