@@ -109,7 +109,7 @@ def test_recordings_on_demand_and_snapshots_have_those_of_their_time_and_one_bef
     words = ("--program", program(tmp_path), "--keep", 5, "--checkpoints", 1, "--stay")
     running = Running(MILL, *words)
     try:
-        running.wait_for_nodes(6)
+        running.wait_for_nodes(8)
         run("do", "recorder", "start", path)
         running.wait_until_recorded(path, 300_000)
         run("do", "recorder", "snapshot", snapshot, "seconds=1.5")
