@@ -196,7 +196,8 @@ class Session:
                 data = self._outgoing.popleft()
                 sending = self._socket.send_bytes(data) if isinstance(data, bytes) else self._socket.send_str(data)
                 try:
-                    await asyncio.wait_for(sending, LONGEST_STALL)
+                    async with asyncio.timeout(LONGEST_STALL):  # in Python 3.11 wait_for may swallow a cancel
+                        await sending
                 except Exception:  # the socket, or what was to be sent
                     await self.abort()
                     return

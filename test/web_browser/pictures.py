@@ -34,9 +34,9 @@ SCALE = 0.75
 def take(page: Any, file: Path, scale: float) -> None:
     picture = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
     size = (round(picture.width * scale), round(picture.height * scale))
-    picture.resize(size, Image.Resampling.LANCZOS).quantize(
-        COLOURS, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE
-    ).save(file, optimize=True)
+    small = picture.resize(size, Image.Resampling.LANCZOS)
+    few = small.quantize(COLOURS, Image.Quantize.MAXCOVERAGE, kmeans=1, dither=Image.Dither.NONE)
+    few.save(file, optimize=True)
     print(file.relative_to(ROOT), file.stat().st_size)
 
 

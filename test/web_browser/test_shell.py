@@ -118,11 +118,19 @@ def test_the_curve_of_a_spindle_is_drawn_with_its_break_points(look):
 
 
 @pytest.mark.parametrize("name", PAGES)
-def test_no_page_is_wider_than_a_phone(look, name):
+def test_no_page_is_wider_than_a_phone_and_no_panel_lower_than_what_is_in_it(look, name):
     page = look(name, size=PHONE)
     page.wait_for_timeout(300)
+    link = page.locator("[aria-current=page]").bounding_box()
+    assert link["x"] >= 0 and link["x"] + link["width"] <= PHONE["width"]
     assert page.evaluate("document.documentElement.scrollWidth") <= PHONE["width"]
     assert page.evaluate("document.querySelector('main').scrollWidth") <= PHONE["width"]
+    assert (
+        page.evaluate(
+            "[...document.querySelectorAll('main .panel')].filter((one) => one.scrollHeight > one.clientHeight + 1).map((one) => one.innerText)"
+        )
+        == []
+    )
 
 
 def test_pages_are_reached_by_keys(look):

@@ -97,6 +97,7 @@ class App {
       if (link.dataset.page === this.page) link.setAttribute("aria-current", "page");
       else link.removeAttribute("aria-current");
     }
+    this.nav.querySelector("[aria-current]")?.scrollIntoView({ block: "nearest", inline: "nearest" }); // on a phone
     const instead = this._instead();
     const module = instead ? null : await import(`./pages/${this.page}.js`);
     if (turn !== this._turn) return;
