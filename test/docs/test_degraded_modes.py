@@ -16,13 +16,13 @@ def functions(file: Path) -> set[str]:
     return {node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)}
 
 
-def test_each_line_names_a_test():
+def test_each_line_names_tests_that_there_are():
     assert len(ROWS) > 30
     for row in ROWS:
         cells = row.strip("| ").split(" | ")
         assert len(cells) == 5, row
-        (test,) = re.findall(r"`(test/\S+\.py)::(test_\w+)`", cells[-1])
-        assert test[1] in functions(ROOT / test[0]), row
+        tests = re.findall(r"`(test/\S+\.py)::(test_\w+)`", cells[-1])
+        assert tests and all(name in functions(ROOT / file) for file, name in tests), row
 
 
 def test_numbers_are_those_of_the_catalogue():

@@ -16,6 +16,7 @@ FAULTS = (
     Fault("coupled", "x", KILL, 0.0, 2.123),
     Fault("gantry", "y", HOLD, 0.6, 1.789),
     Fault("tapping", "supervisor", KILL, 0.0, 2.5),
+    Fault("ptp", "recorder", KILL, 0.0, 4.0),
 )
 """Other kinds are in test_kill.py, test_drive_watch.py and test_slaves.py."""
 HELD_CLOCK = Fault("thread", "clock", HOLD, 1.5, 2.5)
@@ -30,6 +31,7 @@ def test_a_fault(fault: Fault, tmp_path: Path, ros_domain: int) -> None:
     row = kills.run(fault, tmp_path, domain=ros_domain)
     assert row.problems == [] and row.outcome == "stopped"
     assert row.cycles > 500
+    assert (tmp_path / "seen.npz").exists() == (fault.node == "recorder")
 
 
 def test_a_suspended_graph_goes_on(tmp_path: Path, ros_domain: int) -> None:

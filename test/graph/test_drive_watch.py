@@ -1,6 +1,7 @@
 """The watchdogs of simulated drives: an axis or spindle whose process says nothing any more brakes on its own."""
 
 import os
+import re
 import signal
 import time
 from dataclasses import replace
@@ -328,7 +329,7 @@ def test_a_process_that_was_held_up_ends_when_its_drive_has_braked(moving):
     os.kill(nodes["x"], signal.SIGSTOP)
     time.sleep(1.0)
     os.kill(nodes["x"], signal.SIGCONT)
-    graph.finish(expect=1)
+    assert "P-ERR-26101" in graph.finish(expect=1)
     check_braked(read_recording(recording))
     assert wait_until_gone(nodes.values()) == []
 
@@ -344,6 +345,7 @@ def test_a_process_that_is_held_up_for_a_moment_catches_up(moving):
     graph.process.send_signal(signal.SIGINT)
     output = graph.finish(expect=1)
     assert "P-ERR-26106" in output and "P-ERR-26101" not in output and "P-ERR-26265" not in output
+    assert float(re.search(r"block lateness .* largest ([0-9.]+) ms", output)[1]) > 30.0
     recorded = verified(recording, whole=False)
     assert recorded.drive_stops == []
     assert np.all(np.diff(recorded.states["/x/state"]["cycle"].astype(int)) == 1)

@@ -61,7 +61,10 @@ def test_killed_node(running, node):
     assert recorded.last_cycle > 500
     check_every_reader_opens(recording)
     check_ramps(recorded, skip=node, ended=node != "recorder")
-    assert {stop.unit for stop in recorded.drive_stops} <= {node}, "no drive of a living unit brakes on its own"
+    drives = {node} & {"x", "s"}
+    assert {stop.unit for stop in recorded.drive_stops} == drives, "no drive of a living unit brakes on its own"
+    assert all(stop.actual_velocity[-1] == 0.0 for stop in recorded.drive_stops)
+    assert len([event for event in recorded.events if event.error_id in (26265, 26266)]) == len(drives)
     assert "P-ERR-26267" not in output
     lost = {event.source for event in recorded.events if event.error_id == 26101}
     if node != "recorder":
@@ -86,6 +89,9 @@ def test_killed_node_while_it_taps(tmp_path, node):
     assert f"P-ERR-26104 node '{node}' (process {nodes[node]}) was ended by SIGKILL" in output
     recorded = verified(recording, whole=False)
     check_ramps(recorded, skip=node, ended=True, axes=("x", "y", "z"))
+    assert "P-ERR-26101" in output
+    assert {stop.unit for stop in recorded.drive_stops} == {node} & {"s", "z"}
+    assert recorded.states["/z/state"]["set_position"][-1] < 0.0, "the tool is in the hole"
     if node != "s":
         speed = recorded.states["/s/state"]["set_speed_rpm"]
         assert speed.max() > 100.0 and speed[-1] == 0.0

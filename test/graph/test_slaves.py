@@ -10,6 +10,7 @@ from client_support import beside_composed_run
 from graph_support import PTP, Running, kill, run, verified, wait_until_gone
 
 from cnc_ptp import msg, srv
+from cnc_ptp.parameters import read_machine
 
 MOVE = "target: {}, velocity: 500, acceleration: 5000, deceleration: 5000, jerk: 50000"
 CASCADE = f"""
@@ -66,7 +67,12 @@ def test_a_dead_master_stops_its_slaves(tmp_path, dead, first):
         graph.end()
     assert wait_until_gone(nodes.values()) == []
     assert f"axis {first}: no block of '{dead}' came within the watchdog time" in output
+    assert f"P-ERR-26104 node '{dead}'" in output and "P-ERR-26265 " in output
     recorded = verified(recording, whole=False)
+    (stop,) = recorded.drive_stops
+    ramp = np.abs(np.diff(stop.actual_velocity)).max() / 1e-3
+    assert stop.unit == dead and stop.actual_velocity[-1] == 0.0
+    assert ramp <= read_machine(str(PTP)).axes[dead].deceleration * (1.0 + 1e-6), "as its group"
     for axis in {"x", "y", "z"} - {dead}:
         rows = recorded.states[f"/{axis}/state"]
         assert rows["set_velocity"][-1] == 0.0 and np.abs(rows["set_velocity"]).max() > 100.0

@@ -5,6 +5,7 @@ import os
 import shutil
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -64,16 +65,22 @@ def inside(namespace):
     return ("ip", "netns", "exec", namespace)
 
 
-@pytest.mark.long
-def test_two_ends_and_a_stranger(tunnel, tmp_path):
-    a, b = tunnel
-    recording = tmp_path / "run.mcap"
-    machine = one_axis_machine(tmp_path)
+def running(a, folder):
+    """A machine in A, recorded in run.mcap."""
+    machine, recording = one_axis_machine(folder), folder / "run.mcap"
     words = [*inside(a), sys.executable, "-m", "cnc_ptp", "run", machine, "--composed", "--stay", "--record", recording]
     run = Running.__new__(Running)
     run.process = subprocess.Popen(
         list(map(str, words)), env=reaching(B), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
     )
+    return run
+
+
+@pytest.mark.long
+def test_two_ends_and_a_stranger(tunnel, tmp_path):
+    a, b = tunnel
+    recording = tmp_path / "run.mcap"
+    run = running(a, tmp_path)
     try:
         run.wait_until_recorded(recording, 1)
         with other_computer() as stranger:
@@ -97,6 +104,46 @@ def test_two_ends_and_a_stranger(tunnel, tmp_path):
         run.end()
     commands = [record.command for record in read_recording(recording).commands if record.target == "x"]
     assert commands.count("move_absolute") == 1
+
+
+JOGS = """
+import sys, rclpy
+from rclpy.executors import SingleThreadedExecutor
+from cnc_ptp import msg
+from cnc_ptp.nodes.topics import BLOCKS, PLC_INPUT
+rclpy.init()
+node = rclpy.create_node("far", enable_rosout=False)
+jog = node.create_publisher(msg.Jog, "x/jog", PLC_INPUT)
+node.create_subscription(msg.AxisBlock, "x/block", lambda b: b.set_velocity[-1] == 5.0 and print("moves", flush=True), BLOCKS)
+node.create_timer(0.04, lambda: jog.publish(msg.Jog(valid=True, velocity=5.0)))
+executor = SingleThreadedExecutor()
+executor.add_node(node)
+executor.spin()
+"""
+
+
+@pytest.mark.long
+def test_a_tunnel_that_is_cut_ends_a_jog_and_nothing_else(tunnel, tmp_path):
+    a, b = tunnel
+    run = running(a, tmp_path)
+    words = [*inside(b), sys.executable, "-c", JOGS]
+    try:
+        run.wait_until_recorded(tmp_path / "run.mcap", 1)
+        with subprocess.Popen(words, env=reaching(A), stdout=subprocess.PIPE, text=True) as far:
+            assert far.stdout.readline() == "moves\n"
+            subprocess.run(["ip", "-n", b, "link", "set", f"wg-{b[:12]}", "down"], check=True)
+            time.sleep(3.0)
+            far.kill()
+        assert run.process.poll() is None
+        run.process.send_signal(2)
+        run.finish(0)
+    finally:
+        run.end()
+    recorded = read_recording(tmp_path / "run.mcap")
+    assert [event.error_id for event in recorded.events if event.error_id] == [26134]
+    rows = recorded.states["/x/state"]
+    assert rows["set_velocity"].max() == 5.0 and rows["set_velocity"][-1] == 0.0
+    assert not rows["error_id"].any()
 
 
 def test_the_ends_are_gone_afterwards():

@@ -1,6 +1,8 @@
 """requirements.lock: every requirement has an exact version that fits it, and hashes."""
 
+import os
 import re
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -33,6 +35,16 @@ def test_a_requirement_is_locked(requirement):
     version = locked().get(canonicalize_name(requirement.name))
     assert version is not None, "make lock"
     assert requirement.specifier.contains(version, prereleases=True)
+
+
+def test_a_locked_setup_takes_nothing_else(tmp_path):
+    """What make would call in a new environment."""
+    environment = {name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MAKELEVEL")}
+    words = ["make", "--dry-run", "setup", "LOCKED=1", f"VENV={tmp_path / 'new'}"]
+    done = subprocess.run(words, cwd=ROOT, env=environment, capture_output=True, text=True, check=True)
+    installs = [call for call in done.stdout.replace("\\\n", " ").splitlines() if "pip install" in call]
+    assert "--require-hashes -r requirements.lock" in installs[0] and "requirements.txt" not in installs[0]
+    assert all("--no-deps" in call for call in installs[1:])
 
 
 def test_every_entry_has_hashes():
