@@ -135,9 +135,10 @@ class _Survey:
     def _count_attachment(self, record: RawRecord) -> None:
         part = self._records.attachment(record)
         length, size = RECORD_PREFIX.size + len(record.body), len(part.data)
-        self._contents.attachment_indexes.append(
-            AttachmentIndex(record.offset, length, part.log_time, part.create_time, size, part.name, part.media_type)
+        index = AttachmentIndex(
+            record.offset, length, part.log_time, part.create_time, size, part.name, part.media_type
         )
+        self._contents.attachment_indexes += bytes_of(index)
         self._contents.statistics.attachment_count += 1
 
     def _count_metadata(self, record: RawRecord) -> None:

@@ -45,6 +45,7 @@ from mcap.writer import LIBRARY_IDENTIFIER, MCAP0_MAGIC
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.recording.bag import RECORD, bag_information, forget_beside, metadata_text, write_beside
+from cnc_ptp.recording.kept_records import KeptRecords
 from cnc_ptp.recording.settings import compressor
 from cnc_ptp.wire.layout import Bytes
 
@@ -81,8 +82,8 @@ class Contents:
     schemas: list[Schema] = field(default_factory=list)
     channels: list[Channel] = field(default_factory=list)
     chunk_indexes: bytearray = field(default_factory=bytearray)
-    """Records as the summary has them: a recording of a day has a million."""
-    attachment_indexes: list[AttachmentIndex] = field(default_factory=list)
+    """Records as the summary has them."""
+    attachment_indexes: bytearray = field(default_factory=bytearray)
     metadata_indexes: list[MetadataIndex] = field(default_factory=list)
 
 
@@ -117,8 +118,8 @@ class McapFile:
         self._crc = contents.crc
         self._schemas = contents.schemas
         self._channels = contents.channels
-        self._chunk_indexes = contents.chunk_indexes
-        self._attachment_indexes = contents.attachment_indexes
+        self._chunk_indexes = kept(contents.chunk_indexes, path.parent)
+        self._attachment_indexes = kept(contents.attachment_indexes, path.parent)
         self._metadata_indexes = contents.metadata_indexes
         self._chunk = _OpenChunk()
         self._closed_chunks: deque[tuple[_OpenChunk, Future[tuple[bytes, int]]]] = deque()
@@ -171,9 +172,8 @@ class McapFile:
         self.finish_chunks()
         start = self._offset
         self._record(Attachment(create_time=0, log_time=log_time, name=name, media_type=media_type, data=data))
-        self._attachment_indexes.append(
-            AttachmentIndex(start, self._offset - start, log_time, 0, len(data), name, media_type)
-        )
+        index = AttachmentIndex(start, self._offset - start, log_time, 0, len(data), name, media_type)
+        self._attachment_indexes.add(bytes_of(index))
         self.statistics.attachment_count += 1
         self._flush()
 
@@ -264,7 +264,7 @@ class McapFile:
             message_start_time=first,
             uncompressed_size=chunk.size,
         )
-        self._chunk_indexes += bytes_of(index)
+        self._chunk_indexes.add(bytes_of(index))
         count_chunk(self.statistics, chunk.message_count, first, last)
 
     def close(self) -> None:
@@ -317,12 +317,12 @@ class McapFile:
         self.statistics.schema_count = len(self._schemas)
         self.statistics.channel_count = len(self._channels)
         start = self._offset
-        groups: list[tuple[Opcode, bytes | bytearray]] = [
+        groups: list[tuple[Opcode, bytes]] = [
             (Opcode.SCHEMA, bytes_of(*self._schemas)),
             (Opcode.CHANNEL, bytes_of(*self._channels)),
             (Opcode.STATISTICS, bytes_of(self.statistics)),
-            (Opcode.CHUNK_INDEX, self._chunk_indexes),
-            (Opcode.ATTACHMENT_INDEX, bytes_of(*self._attachment_indexes)),
+            (Opcode.CHUNK_INDEX, self._kept(self._chunk_indexes)),
+            (Opcode.ATTACHMENT_INDEX, self._kept(self._attachment_indexes)),
             (Opcode.METADATA_INDEX, bytes_of(*self._metadata_indexes)),
         ]
         summary = bytearray()
@@ -337,6 +337,12 @@ class McapFile:
         self._write(summary)
         self._record(Footer(start, offset_start, crc))
         self._write(MCAP0_MAGIC)
+
+    def _kept(self, records: KeptRecords) -> bytes:
+        try:
+            return records.contents()
+        except OSError as error:
+            raise self._failed(error) from error
 
     def _record(self, record: McapRecord) -> None:
         self._write(bytes_of(record))
@@ -362,6 +368,8 @@ class McapFile:
         self._whole = self._offset, self._crc
 
     def _close_stream(self) -> None:
+        self._chunk_indexes.close()
+        self._attachment_indexes.close()
         try:
             self._stream.close()
         except OSError as error:
@@ -416,6 +424,13 @@ class _OpenChunk:
     def time_range(self) -> tuple[int, int]:
         times = [entries["log_time"] for runs in self.indexes.values() for entries in runs]
         return min(int(run.min()) for run in times), max(int(run.max()) for run in times)
+
+
+def kept(records: bytearray, folder: Path) -> KeptRecords:
+    """Those of a file in this folder, with what was found in it."""
+    found = KeptRecords(folder)
+    found.add(records)
+    return found
 
 
 def count_chunk(statistics: Statistics, messages: int, first: int, last: int) -> None:
