@@ -120,7 +120,7 @@ def run(fault: Fault, folder: Path, *, domain: int) -> Row:
         written = int(computed * 1e6 / machine.cycle_time_us)
         check_recording(row, case, recording, written)
         if witness is not None:
-            row.problems += (f"seen: {text}" for text in motion.problems(witness.seen(), machine, ended=True))
+            row.problems += (f"seen: {text}" for text in motion.seen_problems(witness.seen(), machine))
     return row
 
 

@@ -97,6 +97,13 @@ def problems(
             yield f"{unit}: its position jumps ({moved.max():.1f} per second at {int(moved.argmax())})"
 
 
+def seen_problems(seen: Recorded, machine: MachineParameters) -> Iterator[str]:
+    """What a witness has seen of a machine that has ended: of every axis and spindle."""
+    for unit in {*machine.axes, *machine.spindles} - {*tracks(seen)}:
+        yield f"{unit}: nothing"
+    yield from problems(seen, machine, ended=True)
+
+
 def violations(recording: Path) -> list[str]:
     """What the checker of all recordings finds (cnc_ptp verify --motion); it knows nothing of drives alone."""
     try:
@@ -163,17 +170,17 @@ def out_of_step(recorded: Recorded, links: Sequence[Link], machine: MachineParam
     tapping = [link for link in links if link.master in machine.spindles and {link.master, link.slave} <= {*found}]
     for link in tapping:
         spindle, axis = found[link.master], found[link.slave]
-        count = min(len(spindle.cycles), len(axis.cycles))
-        turned, moved = (each.set_position[:count] - each.set_position[0] for each in (spindle, axis))
-        yield from steps_left(
-            link.slave, spindle, spindle.cycles[:count], turned - moved / link.factor, recorded, machine
-        )
+        cycles, *both = np.intersect1d(spindle.cycles, axis.cycles, assume_unique=True, return_indices=True)
+        positions = [each.set_position[at] for each, at in zip((spindle, axis), both, strict=True)]
+        turned, moved = (each - each[:1] for each in positions)
+        yield from steps_left(link.slave, spindle, cycles, turned - moved / link.factor, recorded, machine)
     names = {spindle.number: name for name, spindle in machine.spindles.items()}
     for rows in () if tapping else recorded.threads.values():
         followed = rows[~np.isnan(rows["set_phase_error_deg"])]
         for number in set(followed["spindle"].tolist()):
-            spindle, errors = found[names[number]], followed["set_phase_error_deg"]
-            yield from steps_left("thread", spindle, followed["cycle"], errors, recorded, machine)
+            own = followed[followed["spindle"] == number]
+            errors = own["set_phase_error_deg"]
+            yield from steps_left("thread", found[names[number]], own["cycle"], errors, recorded, machine)
 
 
 def steps_left(

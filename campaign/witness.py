@@ -11,6 +11,7 @@ import select
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from types import TracebackType
@@ -33,8 +34,8 @@ COLUMNS = {
 }
 STOP = "drive_stop "
 """Name of the values of a drive that has stopped on its own: this, and the unit."""
-PATIENCE = 30.0
-"""Seconds."""
+START, PATIENCE = 30.0, 30.0
+"""Seconds for the start of the program; for the first block of all units, and for its end."""
 
 
 class Witness:
@@ -57,12 +58,15 @@ class Witness:
 
     def wait(self) -> None:
         """Until it has seen all units, for PATIENCE at most, or has ended."""
-        assert self._process.stdout is not None
-        self._process.stdout.readline()
+        select.select([self._process.stdout], [], [], START + PATIENCE)
 
     def seen(self) -> Recorded:
-        self._process.communicate(timeout=PATIENCE)
+        """Nothing where it has ended before or does not end."""
+        with suppress(subprocess.TimeoutExpired):
+            self._process.communicate(timeout=PATIENCE)
         found = Recorded(self._file)
+        if not self._file.exists():
+            return found
         with np.load(self._file) as values:
             for name in values.files:
                 if name.startswith(STOP):

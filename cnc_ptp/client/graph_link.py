@@ -14,7 +14,6 @@ from itertools import count
 from typing import Any, TypeVar
 
 from rclpy.qos import QoSProfile, QoSReliabilityPolicy
-from rclpy.serialization import deserialize_message
 
 from cnc_ptp import msg
 from cnc_ptp.axis.jog_commands import JOG
@@ -120,13 +119,13 @@ class GraphLink(Link):
         self._note(partial(self.seen.take_block, unit, block))
 
     def _take_event(self, data: bytes) -> None:
-        event = convert.message_to_event(deserialize_message(data, msg.Event))
+        event = convert.message_to_event(convert.message_of(data, msg.Event))
         self._note(partial(self.seen.take_event, event))
         for jogging in self._jogs.values():
             jogging.take_event(event)
 
     def _take_record(self, data: bytes) -> None:
-        record = convert.message_to_record(deserialize_message(data, msg.CommandRecord))
+        record = convert.message_to_record(convert.message_of(data, msg.CommandRecord))
         self._note(partial(self.seen.take_record, record))
         if record.command == JOG and record.target in self._jogs:
             self._jogs[record.target].take_record(record)

@@ -267,7 +267,8 @@ class RecorderNode(PollingNode):
     def _on_block(self, unit: str, block_class: type, data: bytes) -> None:
         self._heard = time.monotonic()
         if self._recording is None:
-            self._early.append(lambda: self._on_block(unit, block_class, data))
+            later = self.readable(block_topic(unit), partial(self._on_block, unit, block_class))
+            self._early.append(lambda: later(data))
             return
         data = with_plain_header(block_class, data, self._recording.stamps)
         if unit == PLC:

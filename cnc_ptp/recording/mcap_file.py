@@ -339,10 +339,13 @@ class McapFile:
         self._write(MCAP0_MAGIC)
 
     def _kept(self, records: KeptRecords) -> bytes:
+        """They need their room on the disk no longer."""
         try:
             return records.contents()
         except OSError as error:
             raise self._failed(error) from error
+        finally:
+            records.close()
 
     def _record(self, record: McapRecord) -> None:
         self._write(bytes_of(record))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from errno import EISDIR
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -27,10 +27,19 @@ def in_place_of(output: Path) -> Iterator[Path]:
     if target.exists() and not target.is_file():
         yield target
         return
-    try:
-        with folder_beside(output) as part:
-            yield part
+    with ExitStack() as stack:
+        with said_of(output):
+            part = stack.enter_context(folder_beside(output))
+        yield part
+        with said_of(output):
             os.replace(part, target)
+
+
+@contextmanager
+def said_of(output: Path) -> Iterator[None]:
+    """Raises CncError 26007 of `output` instead of an OSError."""
+    try:
+        yield
     except OSError as error:
         raise not_written(output, f"cannot be created: {error.strerror}") from error
 

@@ -205,7 +205,9 @@ class OnDemand:
         self._texts |= texts
 
     def checkpoint(self, cycle: int, state: bytes, unit: str = "") -> None:
-        """The state before `cycle`: of all units, or of `unit` as a part of it."""
+        """The state before `cycle`: of all units, or of `unit` as a part of it. Blocks may come a little later."""
+        if cycle > self._newest + self._cycles(PATIENCE):
+            return
         self._states.add(cycle, unit, state)
         oldest = math.inf if self._kept is None else self._kept.oldest
         self._states.forget(min(oldest, self._newest - self._cycles(PATIENCE)))

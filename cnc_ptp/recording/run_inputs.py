@@ -34,9 +34,6 @@ from cnc_ptp.wire.ticks import Tick, decode_tick
 CHECKPOINTS_OF: Final = "cnc_ptp.checkpoints"
 """Metadata of a file beside a recording: the run that its checkpoints are of."""
 NO_MACHINE: Final = 26155
-MORE_SECONDS: Final = (
-    "nothing was computed, keep more seconds (--keep) than lie between two checkpoints (--checkpoints)"
-)
 
 
 def checkpoint_file(recording: Path) -> Path:

@@ -178,6 +178,13 @@ def test_a_thread_that_leaves_its_spindle_is_found(error, told, permitted):
     assert list(motion.out_of_step(made, (), MILL)) == texts
 
 
+def test_a_witness_that_has_seen_nothing_is_a_problem(tmp_path):
+    made = witness.Witness.__new__(witness.Witness)
+    made._file, made._process = tmp_path / "seen.npz", SimpleNamespace(communicate=lambda timeout: None)
+    found = sorted(motion.seen_problems(made.seen(), MILL))
+    assert found == ["s: nothing", "x: nothing", "y: nothing", "z: nothing"]
+
+
 def test_a_witness_tells_what_it_has_seen(tmp_path):
     blocks = Blocks(1)
     axis, spindle = (blocks.axis(0), blocks.axis(10)), (blocks.spindle(0),)

@@ -8,8 +8,9 @@ from typing import Any
 
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
-from rclpy.serialization import deserialize_message
 
+from cnc_ptp.errors import CncError
+from cnc_ptp.nodes.convert import message_of
 from cnc_ptp.nodes.handover import Handover
 from cnc_ptp.nodes.topics import BLOCK_TYPES, block_topic
 from cnc_ptp.protocol.blocks import CycleBlock
@@ -64,12 +65,15 @@ class LatestBlocks:
         return time.monotonic() - self._heard > GONE
 
     def view(self, unit: str) -> UnitView | None:
-        """None before the first block."""
+        """None before the first block, and while the newest one cannot be read."""
         newest = self._newest.get(unit)
         if newest is None:
             return None
         kind = self._kinds[unit]
-        block = deserialize_message(newest, BLOCK_TYPES[kind]) if isinstance(newest, bytes) else newest
+        try:
+            block = message_of(newest, BLOCK_TYPES[kind]) if isinstance(newest, bytes) else newest
+        except CncError:
+            return None
         return view_of(unit, kind, block, rotary=unit in self._rotary)
 
     def views(self) -> list[UnitView]:
