@@ -2,6 +2,7 @@
 
 import time
 from functools import partial
+from types import SimpleNamespace
 
 import pytest
 import rclpy
@@ -16,8 +17,10 @@ from recording_support import Blocks
 from spin_support import spin_until
 
 from cnc_ptp import msg
+from cnc_ptp.client.graph_link import GraphLink
 from cnc_ptp.errors import CncError
 from cnc_ptp.nodes import process
+from cnc_ptp.nodes.client.latest_blocks import LatestBlocks
 from cnc_ptp.nodes.clock import ClockNode
 from cnc_ptp.nodes.monitor import RunMonitor
 from cnc_ptp.nodes.recorder import RecorderNode
@@ -47,6 +50,7 @@ from cnc_ptp.wire.stamps import Stamps
 STAMPS = Stamps(0, 1_000_000)
 UNITS = ("plc", "x", "y", "z", "c")
 """Of ptp.yaml."""
+NO_MESSAGE = b"\x00\x01\x00\x00\x07"
 
 
 class Outside(Node):
@@ -189,8 +193,8 @@ def test_states_that_no_unit_has_sent_are_left_out(around, tmp_path):
     spin_until(lambda: recorder._last_tick == 0)
     for unit, texts in (("", ""), ("x", "[1]"), ("x", "{}"), ("q", "[]"), ("x", '["a program"]')):
         states.publish(msg.UnitCheckpoint(unit=unit, next_cycle=10, texts_json=texts, state=b"abc"))
-    spin_until(lambda: recorder._texts)
-    assert recorder.failure is None and [*recorder._texts.values()] == ["a program"]
+    spin_until(lambda: recorder._recording._texts)
+    assert recorder.failure is None and [*recorder._recording._texts.values()] == ["a program"]
     recorder.destroy_node()
     with RunInputs(path) as recorded:
         assert [name for name in recorded._attachments if name.startswith("checkpoint/")] == ["checkpoint/10/x"]
@@ -216,7 +220,7 @@ def test_bytes_that_are_no_messages_do_not_end_a_recorder(around, tmp_path):
     outside.ticks.publish(msg.CycleTick(first_cycle=0, count=10))
     spin_until(lambda: recorder._last_tick == 0)
     for each in foreign:
-        each.publish(b"\x00\x01\x00\x00\x07")
+        each.publish(NO_MESSAGE)
     for values in ("[1]", "{", "[" * 3000):
         commands.publish(msg.CommandRecord(target="x", command="move", values_json=values))
     foreign[0].publish(msg.UnitCheckpoint(unit="x", texts_json="[" * 3000))
@@ -226,6 +230,38 @@ def test_bytes_that_are_no_messages_do_not_end_a_recorder(around, tmp_path):
     assert recorder.failure is None
     recorder.destroy_node()
     assert [record.values for record in read_recording(path).commands] == [{}] * 3
+
+
+def test_bytes_that_are_no_block_do_not_cost_the_beginning_of_a_recording(around, tmp_path):
+    path = tmp_path / "a.mcap"
+    outside, recorder, spin_until = around(lambda: RecorderNode(read_machine(str(PTP)), str(path), PTP.read_text()))
+    foreign = outside.create_publisher(msg.AxisBlock, block_topic("x"), BLOCKS)
+    events = outside.create_publisher(msg.Event, EVENT, EVENTS)
+    spin_until(lambda: all(each.get_subscription_count() for each in (foreign, events, outside.ticks)))
+    foreign.publish(NO_MESSAGE)
+    spin_until(lambda: recorder.take_polled() or recorder._early)
+    events.publish(msg.Event(cycle=0, source="x", severity=Severity.WARNING, text="early"))
+    spin_until(lambda: len(recorder._early) == 2)
+    outside.ticks.publish(msg.CycleTick(first_cycle=0, count=10))
+    spin_until(lambda: recorder._last_tick == 0)
+    assert recorder.failure is None and not recorder._early and recorder._unreadable == {block_topic("x")}
+    recorder.destroy_node()
+    assert [event.text for event in read_recording(path).events] == ["early"]
+
+
+def test_bytes_that_are_no_message_end_no_client():
+    link = GraphLink.__new__(GraphLink)
+    for take, of in ((link._take_event, "Event"), (link._take_record, "CommandRecord")):
+        with pytest.raises(CncError) as error:  # which `poll` leaves out
+            take(NO_MESSAGE)
+        assert error.value.number == 26184 and f"no message {of}" in error.value.reason
+    subscribed = {}
+    node = SimpleNamespace(
+        create_subscription=lambda _of, topic, take, *_rest, **_more: subscribed.update({topic: take})
+    )
+    blocks = LatestBlocks(node, {"x": "axis"}, rotary=())
+    subscribed[block_topic("x")](NO_MESSAGE)
+    assert blocks.views() == []
 
 
 @pytest.mark.parametrize("service", [SetParameters, SetParametersAtomically])

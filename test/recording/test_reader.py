@@ -187,10 +187,10 @@ def test_missing_file(tmp_path):
 @pytest.mark.parametrize(
     ("content", "shown"),
     [
-        (b"", ""),
-        (b"\x89MCAP0\r", "�MCAP0\r"),
-        (b"SQLite format 3\0 and more", "SQLite f"),
-        (b"# cnc_ptp\n", "# cnc_pt"),
+        (b"", "it is empty"),
+        (b"\x89MCAP0\r", "it begins with '�MCAP0\\r' instead of '�MCAP0\\r\\n'"),
+        (b"SQLite format 3\0 and more", "it begins with 'SQLite f' instead of '�MCAP0\\r\\n'"),
+        (b"# cnc_ptp\n", "it begins with '# cnc_pt' instead of '�MCAP0\\r\\n'"),
     ],
 )
 def test_file_that_is_no_mcap(scratch, content, shown):
@@ -198,8 +198,7 @@ def test_file_that_is_no_mcap(scratch, content, shown):
     with pytest.raises(CncError) as error:
         read_recording(scratch)
     assert str(error.value) == (
-        f"P-ERR-26002 recording {scratch}: not an MCAP file: it begins with {shown!r} instead of "
-        "'�MCAP0\\r\\n'; nothing was "
+        f"P-ERR-26002 recording {scratch}: not an MCAP file: {shown}; nothing was "
         "read, give a file that cnc_ptp or 'ros2 bag record --storage mcap' has written"
     )
 
