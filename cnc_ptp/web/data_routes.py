@@ -81,6 +81,7 @@ class DataRoutes:
         self._access.login_of(request)
         face, channel = self._hub.require_face(), request.query.get("channel", "")
         face.require_kind(channel, "channel")
+        self._require_rate()
         dialect = channel_view(face.sets[channel], face.sets, Path()).dialect
         listed = await asyncio.to_thread(self._words_of, dialect)
         words = [{"name": name, "meaning": meaning} for name, meaning in listed]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, fields
 from typing import Any, Protocol
@@ -21,9 +20,10 @@ from cnc_ptp.web.faces.face import WRITE_PARAMETER, Face, Past, State
 from cnc_ptp.web.faces.lag_range import lag_ranges
 from cnc_ptp.web.faces.offset_table import OffsetTable
 from cnc_ptp.web.faces.program_watch import ProgramWatch
+from cnc_ptp.web.faces.record_arguments import record_arguments
 from cnc_ptp.web.faces.switches import Switches
 from cnc_ptp.web.faces.targets import Targets
-from cnc_ptp.web.protocol import difference
+from cnc_ptp.web.protocol import difference, is_of_kind
 
 EVENTS_KEPT = 500
 """Events that a page keeps (static/store.js)."""
@@ -56,6 +56,8 @@ class View:
         """Channel -> what lies between programmed and machine positions."""
         self._switches = Switches()
         self._state: State = {}
+        self._blocks: Sequence[tuple[str, CycleBlock]] = ()
+        """Those of the last time: the record of a command may be behind the blocks of its axis."""
 
     def known(self) -> dict[str, Any]:
         """What a page that comes now gets at first."""
@@ -78,12 +80,13 @@ class View:
         for request in news.requests:
             self.tell_request(request)
         for record in news.records:
-            self._tell_answered(record, news.blocks, units)
+            self._tell_answered(record, [*self._blocks, *news.blocks])
         for unit, block in news.blocks:
             if isinstance(block, ChannelBlock):
                 self._distances.take_block(unit, block)
                 self._tell_offsets(unit, block)
                 self.drop_handshakes(unit, block)
+        self._blocks = news.blocks
         self._tell_tables()
         if news.diagnostics:
             self.to_all({"type": "diagnostics", "nodes": [*news.diagnostics]})
@@ -130,17 +133,17 @@ class View:
             self.handshakes[request.id] = request_fields(request)
             self.to_all({"type": "handshake", **request_fields(request)})
 
-    def _tell_answered(self, record: CommandRecord, blocks: Sequence[tuple[str, CycleBlock]], units: State) -> None:
+    def _tell_answered(self, record: CommandRecord, blocks: Sequence[tuple[str, CycleBlock]]) -> None:
         """A request that was acknowledged, an offset that was changed, by whomever."""
         self._switches.take_record(record)
-        self.targets.take_record(record, blocks, self._state)
+        self.targets.take_record(record, blocks)
         self.programs.take_record(record)
         if record.command == WRITE_PARAMETER and record.accepted:
             self._tell_parameters(record.target)
         if record.target in self.tables:
-            self.tables[record.target].take_record(record, units)
+            self.tables[record.target].take_record(record, blocks)
         if record.command == "acknowledge" and record.accepted:
-            self._end_handshake(json.loads(record.arguments_json).get("id"))
+            self._end_handshake(record_arguments(record).get("id", 0))
 
     def _tell_parameters(self, unit: str) -> None:
         """A parameter of it was written: pages read them again; limits that follow come with it."""
@@ -148,8 +151,8 @@ class View:
         for each in described:
             self.to_all({"type": "parameters", "unit": unit, "described": each})
 
-    def _end_handshake(self, number: int) -> None:
-        if self.handshakes.pop(number, None) is not None:
+    def _end_handshake(self, number: Any) -> None:
+        if is_of_kind(number, "integer") and self.handshakes.pop(number, None) is not None:
             self.to_all({"type": "handshake_done", "id": number})
 
     def drop_handshakes(self, channel: str, block: ChannelBlock) -> None:

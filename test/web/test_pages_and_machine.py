@@ -9,8 +9,10 @@ from web_support import ROOT, site
 
 from cnc_ptp.commands.run.web import words_of
 from cnc_ptp.parameters import CurveParameters, machine_text, read_machine
+from cnc_ptp.protocol.blocks import AxisBlock, CommandRecord
 from cnc_ptp.spindle.acceleration_curves import AccelerationCurve
 from cnc_ptp.web.commissioning.spindle_curve import curve_points, spindle_curve
+from cnc_ptp.web.faces.offset_table import OffsetTable
 from cnc_ptp.web.programs.backplot import HEAD
 
 
@@ -98,6 +100,8 @@ def test_zero_offsets_and_their_changes():
             assert [row["name"] for row in answer["offsets"] if row["index"] in (2, 3)] == ["G55", "G56"]
             assert rows_of(answer) == rows_of(told)
 
+    asyncio.run(story())
+
 
 def rows_of(message):
     return {row["index"]: row["values"] for row in message["offsets"]}
@@ -141,6 +145,77 @@ def test_a_taught_offset_is_what_a_program_finds():
             assert [*taught.values()] == pytest.approx(active["zero_offset"], abs=1e-6)
 
     asyncio.run(story())
+
+
+def test_a_c_axis_is_taught_and_the_pages_continue():
+    """The channel of the lathe has X, Z, C; the table has no column for C, which is a spindle."""
+
+    async def story():
+        async with site(str(ROOT / "config" / "lathe.yaml")) as here:
+            page = await here.page()
+            assert (await page.command("channel", "teach_zero_offset", index=2, axis="C"))["ok"]
+            assert (await page.command("channel", "set_zero_offset", index=2, axis="X", value=4))["ok"]
+            told = await page.wait_for("zero_offsets")
+            assert told["axes"] == ["X", "Z"] and rows_of(told)[2] == {"X": 4.0, "Z": 0.0}
+
+    asyncio.run(story())
+
+
+@pytest.mark.parametrize(
+    "arguments", ["", "[]", "{}", '{"index": [2]}', '{"index": 2, "axis": 7, "value": 1}', "[" * 9999]
+)
+def test_accepted_records_of_others_with_wrong_arguments_change_nothing(arguments):
+    async def story():
+        async with site() as here:
+            page = await here.page()
+            before = await page.ask("offsets")
+            for unit, command in (
+                ("channel", "set_zero_offset"),
+                ("channel", "teach_zero_offset"),
+                ("channel", "load"),
+                ("channel", "single_block"),
+                ("x", "move_absolute"),
+                ("x", "move_relative"),
+                ("plc", "acknowledge"),
+            ):
+                here.hub.face._link.seen.take_record(CommandRecord(5, unit, command, arguments, True, 0, ""))
+            assert (await page.command("channel", "set_zero_offset", index=2, axis="X", value=4))["ok"]
+            assert rows_of(await page.wait_for("zero_offsets")) == {
+                **rows_of(before),
+                2: {"X": 4.0, "Y": 0.0, "Z": 0.0},
+            }
+
+    asyncio.run(story())
+
+
+def test_an_offset_that_was_taught_before_the_server_began_is_not_known_until_it_is_active():
+    """The record comes again to who begins later; the axes have gone on since."""
+
+    async def story():
+        async with site() as here:
+            page = await here.page()
+            assert (await page.ask("load", name="part.nc", text="G55 G01 X10 Y0 Z0 F1000\nX20\nM30\n"))["ok"]
+            await page.wait_for("program")
+            await page.wait_for("state", lambda state: state["time"] > 1.0)
+            taught = CommandRecord(5, "channel", "teach_zero_offset", '{"index": 2}', True, 0, "")
+            here.hub.face._link.seen.take_record(taught)
+            assert rows_of(await page.wait_for("zero_offsets"))[2] == {"X": None, "Y": None, "Z": None}
+            assert (await ends(here)) == [(10.0, 0.0, 0.0), (20.0, 0.0, 0.0)]
+            assert (await page.command("channel", "mdi", text="G55"))["ok"]
+            assert None not in rows_of(await page.wait_for("zero_offsets"))[2].values()
+
+    asyncio.run(story())
+
+
+def test_an_offset_is_taught_where_its_axis_was_in_the_cycle_of_the_command():
+    """Not where it is when the record comes."""
+    machine = read_machine(str(ROOT / "config" / "mill.yaml"))
+    sets = {unit: own for unit, own in machine.sets.items() if unit != "machine"}
+    table = OffsetTable(sets["channel"], sets)
+    blocks = [("x", AxisBlock(100 + n, 10, set_position=[n + 0.5] * 10, set_velocity=[0.0] * 10)) for n in (0, 10, 20)]
+    taught = CommandRecord(113, "channel", "teach_zero_offset", '{"index": 2, "axis": "x", "value": 2}', True, 0, "")
+    table.take_record(taught, blocks)
+    assert table.rows[2] == {"X": 8.5, "Y": 0.0, "Z": 0.0}
 
 
 def test_the_curve_of_a_spindle():
@@ -220,6 +295,9 @@ def test_the_words_of_a_channel():
             assert words["G00"] == "Straight at rapid speed." and "M03" in words and "#TIMER START" in words
             assert "G106" not in words  # not built
             assert (await here.client.get("/api/words", params={"channel": "x"})).status == 400
+            query = {"channel": "channel"}
+            answers = [(await here.client.get("/api/words", params=query)).status for _ in range(70)]
+            assert answers[:20] == [200] * 20 and 429 in answers
 
     asyncio.run(story())
 

@@ -31,25 +31,25 @@ def record(command, *, cycle=10, **arguments):
 def test_the_target_of_an_axis():
     targets = Targets(["x"])
     block = AxisBlock(0, 20, set_position=[0.5 * n for n in range(20)])
-    moving, standing = (
-        {"x": {"set_position": 1.0, "set_velocity": 2.0}},
-        {"x": {"set_position": 1.0, "set_velocity": 0.0}},
-    )
-    for given, blocks, state, wanted in (
-        (record("move_absolute", target=5.0), [], {}, 5.0),
-        (record("move_additive", distance=2.0), [], {}, 7.0),
-        (record("move_relative", distance=2.0), [("x", block)], moving, 6.5),
-        (record("move_relative", distance=2.0), [], standing, 3.0),
-        (record("move_relative", distance=2.0), [], moving, None),
-        (record("move_additive", distance=2.0), [], moving, None),
-        (record("new_target", target=1.0), [], {}, 1.0),
-        (record("set_override", percent=50), [], {}, 1.0),
-        (record("halt"), [], {}, None),
+    moving = AxisBlock(0, 5, set_position=[1.0] * 5, set_velocity=[2.0] * 5)
+    standing = AxisBlock(0, 5, set_position=[1.0] * 5, set_velocity=[0.0] * 5)
+    later = AxisBlock(20, 5, set_position=[1.0] * 5, set_velocity=[0.0] * 5)
+    for given, blocks, wanted in (
+        (record("move_absolute", target=5.0), [], 5.0),
+        (record("move_additive", distance=2.0), [], 7.0),
+        (record("move_relative", distance=2.0), [("x", block)], 6.5),
+        (record("move_relative", distance=2.0), [("x", standing)], 3.0),
+        (record("move_relative", distance=2.0), [("x", moving)], None),
+        (record("move_relative", distance=2.0), [("x", later)], None),
+        (record("move_additive", distance=2.0), [("x", standing)], None),
+        (record("new_target", target=1.0), [], 1.0),
+        (record("set_override", percent=50), [], 1.0),
+        (record("halt"), [], None),
     ):
-        targets.take_record(given, blocks, state)
+        targets.take_record(given, blocks)
         assert targets.fields("x") == {"target": wanted}, given
     refused = CommandRecord(10, "x", "move_absolute", {"target": 9.0}, False, 1, "")
-    targets.take_record(refused, [], {})
+    targets.take_record(refused, [])
     assert targets.fields("x") == {"target": None} and targets.fields("plc") == {}
 
 

@@ -97,6 +97,8 @@ class Fake:
         """Type of a message -> number and text with which it is refused."""
         self.snapshots: list[str] = []
         """Seconds of each snapshot that was asked for."""
+        self.breaks_off = False
+        """A snapshot ends before all of it was sent."""
         self.kept_from = 0
         """The first cycle that the recorder still has."""
         self.drawn = 0
@@ -240,12 +242,19 @@ class Fake:
             body=struct.pack("<5I", step, int(cycles[0]), 0, len(names), len(cycles)) + columns.tobytes()
         )
 
-    async def _snapshot(self, request: web.Request) -> web.Response:
+    async def _snapshot(self, request: web.Request) -> web.StreamResponse:
         self.snapshots.append(request.query["seconds"])
         if refusal := self.refusals.get("snapshot"):
             return web.json_response(refusal, status=400)
         first = max(self.kept_from, self.cycle - round(float(self.snapshots[-1]) * 1000))
         fields = {"X-First-Cycle": str(first)}
+        if self.breaks_off:
+            response = web.StreamResponse(headers={**fields, "Content-Length": str(len(SNAPSHOT))})
+            await response.prepare(request)
+            await response.write(SNAPSHOT[:1])
+            assert request.transport is not None
+            request.transport.close()
+            return response
         return web.Response(body=SNAPSHOT, content_type="application/octet-stream", headers=fields)
 
     # the socket

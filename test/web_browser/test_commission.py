@@ -164,6 +164,17 @@ def test_a_snapshot_without_a_recorder_is_refused(look, fake):
     page.complaints.texts.clear()  # the browser logs the refusal 400
 
 
+def test_a_snapshot_that_breaks_off_is_told_and_not_saved(look, fake):
+    fake.breaks_off = True
+    page = look("scope")
+    saved = []
+    page.on("download", lambda download: saved.append(download))
+    page.click("text=MCAP snapshot")
+    page.wait_for_selector(".notice.error")
+    assert fake.snapshots and not saved
+    page.complaints.texts.clear()  # the browser logs the transfer
+
+
 def test_a_viewer_takes_no_snapshot(look, fake):
     fake.role = "viewer"
     page = look("scope")

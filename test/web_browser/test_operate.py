@@ -348,6 +348,23 @@ def test_mdi_completes_what_the_channel_knows_and_says_what_it_means(look):
     assert field.input_value() == "G0 X1 #TIMER START"
 
 
+def test_words_that_come_when_mdi_is_left_open_no_list(look):
+    page = look(command=True)
+    asked = []
+    page.route("**/api/words*", lambda route: asked.append(route))
+    field = page.locator("[aria-label='NC text to execute']")
+    field.press_sequentially("g5")
+    eventually(page, lambda: asked)
+    field.blur()
+    page.wait_for_timeout(300)  # the list closes 150 ms after that
+    with page.expect_response("**/api/words*"):
+        asked[0].continue_()
+    page.wait_for_timeout(300)
+    assert page.locator(".offers").is_hidden() and field.get_attribute("aria-expanded") == "false"
+    field.fill("g54")
+    page.wait_for_selector(".offers li >> text=Zero offset 1.")
+
+
 def test_completions(look):
     page = look("alarms")
     found = page.evaluate(
@@ -424,6 +441,10 @@ def test_offsets_are_shown_set_and_taught(look, server, fake):
     rows = [{"index": 1, "name": "G54", "values": {"X": 7.5, "Y": 0.0, "Z": -3.0}}]
     server.do(fake.tell({"type": "zero_offsets", "channel": "channel", "axes": ["X", "Y", "Z"], "offsets": rows}))
     eventually(page, lambda: cell.input_value() == "7.5")
+    rows = [{"index": 2, "name": "G55", "values": {"X": None, "Y": 1.0, "Z": 0.0}}]
+    server.do(fake.tell({"type": "zero_offsets", "channel": "channel", "axes": ["X", "Y", "Z"], "offsets": rows}))
+    page.wait_for_selector("[aria-label='G55 X'][placeholder='taught']")
+    assert [page.input_value(f"[aria-label='G55 {axis}']") for axis in "XYZ"] == ["", "1", "0"]
     cell.fill("-4")
     cell.press("Enter")
     eventually(page, lambda: commands(fake)[-1] == ("set_zero_offset", {"index": 1, "axis": "X", "value": -4}))

@@ -272,6 +272,19 @@ def test_the_axis_page_shows_and_writes_parameters(mill):
     until(page, "document.querySelector('.parameters select')?.value === '1'")
 
 
+def test_a_value_is_a_number_however_it_is_written(mill):
+    page = mill("commission")
+    page.click("[role=tab]:text-is('Parameters')")
+    page.fill("[type=search]", "P-AXIS-00099")
+    row = page.locator(".parameters tbody tr").first
+    for text, number in (("4.1e3", "4100"), ("4200.0", "4200")):
+        row.locator("input").fill(text)
+        row.locator("button").click()
+        until(page, f"document.querySelector('.parameters input').value === '{number}'")
+    page.evaluate("app.command('x', 'write_parameter', {parameter: 'P-AXIS-00099', value: 4300})")
+    until(page, "document.querySelector('.parameters input').value === '4300'")
+
+
 def test_what_is_entered_outlives_the_writing_of_another_parameter(mill):
     page = mill("commission")
     page.click("[role=tab]:text-is('Parameters')")

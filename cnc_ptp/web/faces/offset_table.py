@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from cnc_ptp.parameters import ParameterSet
 from cnc_ptp.parameters.view.axis_view import is_facing
 from cnc_ptp.parameters.view.channel_view import channel_view
-from cnc_ptp.protocol.blocks import ChannelOffsets, CommandRecord
+from cnc_ptp.protocol.blocks import ChannelOffsets, CommandRecord, CycleBlock
+from cnc_ptp.web.faces.record_arguments import record_arguments
+from cnc_ptp.web.faces.targets import set_position_at
+from cnc_ptp.web.protocol import is_of_kind
 
 FIRST_CODE = 53
 """Index 1 is G54."""
 LAST_CODE = 59
-Rows = Mapping[int, Mapping[str, float]]
-"""Index -> name of an axis in programs -> its offset in mm (deg); of a facing axis a diameter with P-CHAN-00091."""
+Rows = Mapping[int, Mapping[str, float | None]]
+"""Index -> name of an axis in programs -> its offset in mm (deg); of a facing axis a diameter with P-CHAN-00091.
+
+None: it was taught where its axis stood then, which is not known here, until it is active."""
 
 
 class OffsetTable:
@@ -36,7 +40,9 @@ class OffsetTable:
 
     def begin_again(self) -> None:
         """As the parameters have them."""
-        self._values = {index: dict(zip(self._units, values, strict=False)) for index, values in self._given.items()}
+        self._values: dict[int, dict[str, float | None]] = {
+            index: dict(zip(self._units, values, strict=False)) for index, values in self._given.items()
+        }
         self._below: dict[str, float] = {}
         """What clamp position and tool add to an axis."""
 
@@ -44,20 +50,25 @@ class OffsetTable:
     def rows(self) -> Rows:
         return {index: dict(row) for index, row in self._values.items()}
 
-    def take_record(self, record: CommandRecord, state: Mapping[str, Mapping[str, Any]]) -> None:
-        """A command that has changed an offset; `state` of the units: their channel stood."""
+    def take_record(self, record: CommandRecord, blocks: Sequence[tuple[str, CycleBlock]]) -> None:
+        """A command that has changed an offset; `blocks` that came lately."""
         if not record.accepted or record.command not in ("set_zero_offset", "teach_zero_offset"):
             return
-        given = json.loads(record.arguments_json)
-        row = self._values.setdefault(given["index"], dict.fromkeys(self._units, 0.0))
-        value = given.get("value", 0.0)
-        for axis in [given["axis"]] if given.get("axis") else self._units:
-            name = next((each for each in self._units if each.upper() == axis.upper()), axis)
-            row[name] = value if record.command == "set_zero_offset" else self._taught(name, value, state)
+        given = record_arguments(record)
+        index: Any = given.get("index")
+        axis, value = given.get("axis") or "", given.get("value", 0.0)
+        if not (is_of_kind(index, "integer") and is_of_kind(axis, "text") and is_of_kind(value, "number")):
+            return
+        is_taught = record.command == "teach_zero_offset"
+        for name in [name for name in self._units if axis.upper() in ("", name.upper())]:  # not the C axis
+            row = self._values.setdefault(index, dict.fromkeys(self._units, 0.0))
+            row[name] = self._taught(name, value, record.cycle, blocks) if is_taught else value
 
-    def _taught(self, name: str, value: float, state: Mapping[str, Mapping[str, Any]]) -> float:
-        """With which the present position is `value`."""
-        position: float = state[self._units[name]]["set_position"]
+    def _taught(self, name: str, value: float, cycle: int, blocks: Sequence[tuple[str, CycleBlock]]) -> float | None:
+        """With which the position at a cycle is `value`."""
+        position = set_position_at(self._units[name], cycle, blocks)
+        if position is None:
+            return None
         return (position - self._below.get(name, 0.0) - value) * self._factors.get(name, 1.0)
 
     def take_active(self, offsets: ChannelOffsets) -> None:

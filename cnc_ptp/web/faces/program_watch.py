@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,8 +10,10 @@ from typing import Any
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.program_files import read_file
 from cnc_ptp.protocol.blocks import CommandRecord
+from cnc_ptp.web.faces.record_arguments import record_arguments
 from cnc_ptp.web.numbers import NO_PROGRAM
 from cnc_ptp.web.programs.programs import ProgramFolder
+from cnc_ptp.web.protocol import is_of_kind
 
 REMEMBERED = 4
 """Loads of a channel: its state may be behind its records."""
@@ -50,9 +51,11 @@ class ProgramWatch:
 
     def take_record(self, record: CommandRecord) -> None:
         """A command that was given, by whomever; a program that was refused is none."""
-        if record.command == "load" and record.accepted:
-            given = record.arguments
-            load = load_of(json.loads(given) if isinstance(given, str) else given)
+        if record.command != "load" or not record.accepted:
+            return
+        given = record_arguments(record)
+        if is_of_kind(given.get("program"), "text"):
+            load = load_of(given)
             self._known[record.target] = [load, *self._known.get(record.target, [])][:REMEMBERED]
             self.take(record.target, load)
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
 from cnc_ptp.protocol.blocks import CommandRecord, HandshakeRequest
 from cnc_ptp.protocol.unit import PLC
+from cnc_ptp.web.faces.record_arguments import record_arguments
 
 SWITCHES = (
     "single_block",
@@ -33,7 +33,7 @@ class Switches:
         """A switch that was commanded, by whomever."""
         is_switch = record.command in SWITCHES or (record.target, record.command) == (PLC, EMERGENCY_STOP)
         if record.accepted and is_switch:
-            given = json.loads(record.arguments_json)
+            given = record_arguments(record)
             enabled = given.get("enabled", given.get("on"))  # its former name
             self.fields.setdefault(record.target, {})[record.command] = bool(enabled)
 

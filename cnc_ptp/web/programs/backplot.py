@@ -108,8 +108,8 @@ def changes_of(channel: Channel, rows: Rows) -> OffsetChanges:
     for index, row in rows.items():
         values = list(offset_values(channel, NO_CHANGES, index))
         for place, name in enumerate(channel.axes):
-            if name in row:
-                values[place] = row[name] * channel.turning.offset_factor(place)
+            if (value := row.get(name)) is not None:
+                values[place] = value * channel.turning.offset_factor(place)
         changes[index] = tuple(values)
     return OffsetChanges(changes)
 

@@ -104,7 +104,10 @@ class Input {
     const { value } = this._input;
     if (value === "") return;
     const isWritten = await app.command(unit.name, "write_parameter", { parameter: row.name || row.id, value: Number(value) });
-    if (isWritten) app.notices.show("info", `${row.id} = ${value} until the end of the run.`);
-    else this._input.value = this._machine;
+    if (isWritten) {
+      this._machine = String(Number(value));
+      app.notices.show("info", `${row.id} = ${value} until the end of the run.`);
+    }
+    if (this._input.value === value) this._input.value = this._machine; // nobody has entered another meanwhile
   }
 }

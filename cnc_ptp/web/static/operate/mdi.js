@@ -42,7 +42,7 @@ export function mdi(app) {
 
   async function learn() {
     words = [...words, ...(await ofLanguage(app))];
-    offer(); // of what was typed meanwhile
+    if (document.activeElement === input) offer(); // of what was typed meanwhile
   }
 
   function offer() {

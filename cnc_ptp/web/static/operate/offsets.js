@@ -45,7 +45,8 @@ function row(app, index, name, axes) {
       for (const cell of cells) {
         const value = values[cell.dataset.axis];
         if (document.activeElement === cell || value === undefined) continue;
-        cell.value = Number(value.toFixed(6));
+        cell.value = value === null ? "" : Number(value.toFixed(6));
+        cell.placeholder = value === null ? "taught" : "";
       }
     },
   };

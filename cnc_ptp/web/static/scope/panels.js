@@ -33,8 +33,10 @@ export function runPanel(app, capture, picture) {
     const seconds = Math.max(1, capture.window, held ? app.store.time - begin * cycleTime + ON_THE_WAY : 0);
     const answer = await app.attempt(app.connection.http(`/api/snapshot.mcap?seconds=${Number(seconds.toFixed(3))}`, { as: "response" }));
     if (!answer) return;
+    const bytes = await app.attempt(answer.arrayBuffer());
+    if (!bytes) return;
     const first = Number(answer.headers.get("X-First-Cycle"));
-    download("snapshot.mcap", await answer.arrayBuffer(), "application/octet-stream");
+    download("snapshot.mcap", bytes, "application/octet-stream");
     const [from, shown] = [first, begin].map((cycle) => `${fixed(cycle * cycleTime, 3)} s`);
     if (!held) return; // what runs has gone on meanwhile
     if (first > begin) app.notices.show("warning", `The snapshot has ${from} until now; the picture begins at ${shown}, which the recorder no longer has.`);
