@@ -27,7 +27,7 @@ def test_an_axis_in_feed_hold_keeps_its_part_of_the_distance(tmp_path):
             channel = await page.state_of(
                 "channel", lambda each: each.get("state") == "hold" and each.get("feed") == 0.0
             )
-            view = here.hub._shared
+            view = here.hub.shared
             states = view._state
             assert 0.0 < channel["distance_to_go"] < 48.0
             for axis, share in (("x", 0.6), ("y", 0.8), ("z", 0.0)):
