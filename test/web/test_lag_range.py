@@ -24,7 +24,7 @@ def test_a_page_gets_the_largest_lag_of_a_motion():
         async with site() as here:
             page = await here.page()
             assert (await page.command("x", "move_absolute", target=10, velocity=50))["ok"]
-            limits = next(unit for unit in here.hub._shared.face.machine()["units"] if unit["name"] == "x")["limits"]
+            limits = next(unit for unit in here.hub.shared.face.machine()["units"] if unit["name"] == "x")["limits"]
             largest = 0.0
             while True:
                 x = (await page.wait_for("state"))["units"].get("x", {})
