@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections import deque
 from collections.abc import Iterable, Mapping
 from typing import Generic, NamedTuple, TypeVar
 from weakref import WeakSet
 
+from cnc_ptp.client.record_arguments import written_parameter
 from cnc_ptp.parameters.declare.declarations import ParameterValue
-from cnc_ptp.plc.program.references import WRITE_PARAMETER
 from cnc_ptp.plc.trajectories import BEGIN
 from cnc_ptp.protocol.blocks import (
     ChannelBlock,
@@ -100,11 +99,12 @@ class Observations:
         """A command that was carried out or refused, whoever has given it."""
         for reader in [*self._record_readers]:
             reader.items.append(record)
-        if record.command == WRITE_PARAMETER and record.accepted and record.target in self._written:
-            arguments = json.loads(record.arguments_json)
+        parameter = written_parameter(record)
+        if parameter is not None and record.target in self._written:
+            name, value = parameter
             written = self._written[record.target]
-            written.pop(arguments["parameter"], None)  # the newest is the last one
-            written[arguments["parameter"]] = arguments["value"]
+            written.pop(name, None)  # the newest is the last one
+            written[name] = value
         elif record.command == BEGIN and record.target in self._trajectories:
             self._trajectories[record.target].append(record)
 

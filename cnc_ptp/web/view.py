@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, fields
 from typing import Any, Protocol
 
+from cnc_ptp.client.record_arguments import record_arguments
 from cnc_ptp.protocol.blocks import (
     ChannelBlock,
     ChannelOffsets,
@@ -20,7 +21,6 @@ from cnc_ptp.web.faces.face import WRITE_PARAMETER, Face, Past, State
 from cnc_ptp.web.faces.lag_range import lag_ranges
 from cnc_ptp.web.faces.offset_table import OffsetTable
 from cnc_ptp.web.faces.program_watch import ProgramWatch
-from cnc_ptp.web.faces.record_arguments import record_arguments
 from cnc_ptp.web.faces.switches import Switches
 from cnc_ptp.web.faces.targets import Targets
 from cnc_ptp.web.protocol import difference, is_of_kind

@@ -2,7 +2,11 @@
 
 import asyncio
 
+import pytest
 from web_support import ROOT, site
+
+from cnc_ptp.protocol.blocks import CommandRecord
+from cnc_ptp.web.faces.machine_face import offline_face
 
 PTP = str(ROOT / "config" / "ptp.yaml")
 SOFT_LIMIT = "P-AXIS-00178"
@@ -49,6 +53,23 @@ def test_the_parameters_of_the_machine_are_those_of_the_plc():
             assert (rows["P-MACH-00001"]["value"], rows["P-MACH-00005"]["value"]) == (1000, ["x", "y", "z"])
 
     asyncio.run(story())
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    ["", "[]", "{", "[" * 3000, "{}", '{"parameter": 1, "value": 2}', '{"parameter": "kv", "value": []}',
+     '{"parameter": "no such", "value": 2}'],
+)  # fmt: skip
+def test_records_of_others_that_name_no_parameter_end_nothing(arguments):
+    face = offline_face(PTP)
+    sets = dict(face.sets)
+    record = CommandRecord(0, "x", "write_parameter", arguments, True, 0, "")
+    face._take_parameter(record)
+    assert face.sets == sets
+    seen = face._link.seen
+    before = dict(seen.written("x"))
+    seen.take_record(record)
+    assert seen.written("x") == (before if "no such" not in arguments else {"no such": 2})
 
 
 async def parameter(here, number):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import json
 from abc import abstractmethod
 from collections.abc import Mapping
 from math import inf
@@ -15,6 +14,7 @@ from cnc_ptp.client import Machine
 from cnc_ptp.client.faults import error_of, unknown_unit
 from cnc_ptp.client.link import Link, Reply
 from cnc_ptp.client.offline_link import OfflineLink
+from cnc_ptp.client.record_arguments import written_parameter
 from cnc_ptp.errors import CncError
 from cnc_ptp.nodes.bridge.jog_topics import JogTopics
 from cnc_ptp.parameters import ParameterSet
@@ -25,7 +25,7 @@ from cnc_ptp.protocol.blocks import Command, CommandRecord, Event, Severity
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.web.access.rights import is_stop
 from cnc_ptp.web.faces.description import describe_commands, describe_units
-from cnc_ptp.web.faces.face import WRITE_PARAMETER, Face, News, State
+from cnc_ptp.web.faces.face import Face, News, State
 from cnc_ptp.web.faces.scope import signals_of
 from cnc_ptp.web.faces.unit_fields import unit_states
 from cnc_ptp.web.numbers import STOPPED
@@ -90,11 +90,13 @@ class MachineFace(Face):
 
     def _take_parameter(self, record: CommandRecord) -> None:
         """A parameter of an axis that was written, by whomever."""
-        unit = record.target
-        if record.command != WRITE_PARAMETER or not record.accepted or unit not in self.sets:
+        unit, parameter = record.target, written_parameter(record)
+        if parameter is None or unit not in self.sets:
             return
-        given = json.loads(record.arguments_json)
-        self.sets[unit] = changed(self.sets[unit], given["parameter"], given["value"]).own
+        try:
+            self.sets[unit] = changed(self.sets[unit], *parameter).own
+        except CncError:  # no unit has said so
+            return
         self._units = describe_units(self.kinds, self.sets, self.cycle_time)
 
     async def ask(self, unit: str, command: str, arguments: Mapping[str, Any], *, user: str) -> Reply:

@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from cnc_ptp.client.record_arguments import record_arguments
 from cnc_ptp.parameters import ParameterSet
 from cnc_ptp.parameters.view.axis_view import is_facing
 from cnc_ptp.parameters.view.channel_view import channel_view
 from cnc_ptp.protocol.blocks import ChannelOffsets, CommandRecord, CycleBlock
-from cnc_ptp.web.faces.record_arguments import record_arguments
 from cnc_ptp.web.faces.targets import set_position_at
 from cnc_ptp.web.protocol import is_of_kind
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from cnc_ptp.client.record_arguments import record_arguments
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.program_files import read_file
 from cnc_ptp.protocol.blocks import CommandRecord
-from cnc_ptp.web.faces.record_arguments import record_arguments
 from cnc_ptp.web.numbers import NO_PROGRAM
 from cnc_ptp.web.programs.programs import ProgramFolder
 from cnc_ptp.web.protocol import is_of_kind

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from cnc_ptp.client.record_arguments import record_arguments
 from cnc_ptp.protocol.blocks import CommandRecord, HandshakeRequest
 from cnc_ptp.protocol.unit import PLC
-from cnc_ptp.web.faces.record_arguments import record_arguments
 
 SWITCHES = (
     "single_block",

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from cnc_ptp.client.record_arguments import record_arguments
 from cnc_ptp.protocol.blocks import AxisBlock, CommandRecord, CycleBlock
-from cnc_ptp.web.faces.record_arguments import record_arguments
 from cnc_ptp.web.protocol import is_of_kind
 
 ABSOLUTE = frozenset({"move_absolute", "new_target", "new_velocity_and_target"})
