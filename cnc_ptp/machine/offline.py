@@ -80,13 +80,6 @@ class OfflineMachine:
                 self._runners[name].command(command)
         return self._compute(with_commands=False)
 
-    def changed_tick(self, commands: Mapping[str, Iterable[Command]]) -> Outputs:
-        """Computes the next block of all units with commands from outside and those that units give each other."""
-        for name, of_unit in commands.items():
-            for command in of_unit:
-                self._runners[name].command(command)
-        return self._compute(with_commands=True)
-
     def _compute(self, *, with_commands: bool) -> Outputs:
         """One block of every unit. A coupled axis comes after its master, whatever the order of the machine is."""
         tick = CycleTick(self._first_cycle, self._count)

@@ -100,7 +100,7 @@ class WhatIf:
             given = [*self._recorded_commands(machine)]
             given += [Given(command) for command in [*self._own_commands(machine.next_cycle), *replacing]]
             records = [machine.runner(each.command.target).command(each.command) for each in given]
-            outputs = machine.changed_tick({})
+            outputs = machine.tick()
             self._note_refused(given, records, outputs)
             replacing = replacement.send(outputs)
             self.running = [name for name, output in outputs.items() if is_in_program(output.block)]

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, fields
 from typing import Any, Protocol
 
-from cnc_ptp.client.record_arguments import record_arguments
+from cnc_ptp.client.record_arguments import record_arguments, written_parameter
 from cnc_ptp.protocol.blocks import (
     ChannelBlock,
     ChannelOffsets,
@@ -17,7 +17,7 @@ from cnc_ptp.protocol.blocks import (
 )
 from cnc_ptp.web.faces.alarms import Alarms, event_fields
 from cnc_ptp.web.faces.distances import DistancesToGo
-from cnc_ptp.web.faces.face import WRITE_PARAMETER, Face, Past, State
+from cnc_ptp.web.faces.face import Face, Past, State
 from cnc_ptp.web.faces.lag_range import lag_ranges
 from cnc_ptp.web.faces.offset_table import OffsetTable
 from cnc_ptp.web.faces.program_watch import ProgramWatch
@@ -138,7 +138,7 @@ class View:
         self._switches.take_record(record)
         self.targets.take_record(record, blocks)
         self.programs.take_record(record)
-        if record.command == WRITE_PARAMETER and record.accepted:
+        if written_parameter(record) is not None:
             self._tell_parameters(record.target)
         if record.target in self.tables:
             self.tables[record.target].take_record(record, blocks)

@@ -17,7 +17,6 @@ from cnc_ptp.web.numbers import NO_SNAPSHOT
 
 State = Mapping[str, Mapping[str, Any]]
 """Unit -> its fields, as protocol.py sends them."""
-WRITE_PARAMETER = "write_parameter"
 
 
 @dataclass(slots=True)
