@@ -15,6 +15,7 @@ from cnc_ptp.channel.block_stream import BlockStream
 from cnc_ptp.channel.cycle_rows import CycleRows
 from cnc_ptp.channel.feed_per_turn import FeedPerTurn
 from cnc_ptp.channel.function_output import FunctionOutput
+from cnc_ptp.channel.listed_blocks import ListedBlocks, ProgramBegin
 from cnc_ptp.channel.measuring import Measuring
 from cnc_ptp.channel.offset_memory import OffsetMemory
 from cnc_ptp.channel.path_axes import NOT_AT_END, PathAxes
@@ -598,10 +599,13 @@ class ChannelUnit(Unit):
         else:
             known = self._check.known_blocks(program, start, state, unreferenced, begin)
             times = block_times(self._estimate, known.blocks, start, known.total)
-        stream = BlockStream.of(known.blocks)
-        if not known.complete:
+        point = None if begin is None else begin.point
+        if known.complete:
+            skip = self._check.block_skip
+            begins = ProgramBegin(self._check, program, tuple(start), before, tuple(unreferenced), point, skip)
+            stream = BlockStream(ListedBlocks(begins, known.blocks), known.total)
+        else:
             state = before
-            point = None if begin is None else begin.point
             blocks = RunningBlocks(self._check, program, tuple(start), state, tuple(unreferenced), point)
             place = program.place if program.streamed else None
             stream = BlockStream(blocks, known.total, self._parameters.blocks_per_cycle, place)

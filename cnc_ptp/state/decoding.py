@@ -12,7 +12,6 @@ from __future__ import annotations
 import base64
 import enum
 import itertools
-import json
 from collections import defaultdict, deque
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -26,7 +25,7 @@ from cnc_ptp.state.encoding import FLOAT, Row, digest_of, named
 from cnc_ptp.state.faults import damaged
 from cnc_ptp.state.made_again import AGAIN, FAULTS
 from cnc_ptp.state.roots import PACKAGE, Roots, follow
-from cnc_ptp.state.rows import ROW, check_rows, is_part
+from cnc_ptp.state.rows import check_rows
 
 MISSING: Any = object()
 IN_THE_MAKING: Any = object()
@@ -163,18 +162,6 @@ class Decoder:
     def _iterator(self, row: Row) -> Any:
         return iter(self._values(row[1:]))
 
-    def _iterator_beside(self, row: Row) -> Any:
-        with refused("a list", ValueError):
-            content = json.loads(self._text(row))
-        if not isinstance(content, list) or len(content) != 3 or not is_part(content[0], ROW, len(content[2])):
-            raise damaged("a list beside it has no form")
-        value, shapes, rows = content
-        items = rows[value[0]]
-        if not isinstance(items, list) or items[:1] != ["l"]:
-            raise damaged("a list beside it is none")
-        del items[1 : 1 + row[2]]
-        return iter(Decoder(rows, shapes, self._roots, self._texts).decode(value))
-
     def _many_floats(self, row: Row) -> Any:
         with refused("a list of floats", ValueError):
             return np.frombuffer(base64.b64decode(self._text(row), validate=True), FLOAT).tolist()
@@ -275,7 +262,6 @@ MAKE: dict[str, Any] = {
     "m": Decoder._method,
     "p": Decoder._partial,
     "i": Decoder._iterator,
-    "I": Decoder._iterator_beside,
     "N": Decoder._many_floats,
     "c": Decoder._count,
     "E": Decoder._exception,

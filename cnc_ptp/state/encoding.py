@@ -14,7 +14,6 @@ letter of its form:
     m object, name            bound method
     p function, args, names   partial: function, positional arguments, dict of the others
     i items                   iterator over what is left
-    I digest, taken           the same of a long list of values, which is kept beside the state: rows of its own
     N digest                  list of very many floats, which is kept beside the state: their bytes in base64
     c next, step              itertools.count
     E class, args, attributes exception
@@ -31,36 +30,33 @@ from __future__ import annotations
 import base64
 import enum
 import itertools
-import json
 import math
 from collections import OrderedDict, defaultdict, deque
 from collections.abc import Callable, Iterable
 from functools import partial
 from hashlib import blake2b
+from operator import is_
 from types import BuiltinFunctionType, BuiltinMethodType, FunctionType, MappingProxyType, MethodType, ModuleType
 from typing import Any
 
 import numpy as np
 
+from cnc_ptp.channel.listed_blocks import ListedBlocks
 from cnc_ptp.channel.running_blocks import RunningBlocks
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.streamed_program import StreamedProgram
 from cnc_ptp.state.faults import not_storable
-from cnc_ptp.state.made_again import interpreter_parts, is_open, program_parts
+from cnc_ptp.state.made_again import interpreter_parts, is_open, list_parts, program_parts
 from cnc_ptp.state.roots import PACKAGE, Path, Roots, kernel_module, names_and_values
 
 Row = list[Any]
 FLOAT = "<f8"
 LONG_TEXT = 500
 """Characters from which on a text is kept beside the state, once for all states of a run."""
-LONG_LIST = 100
-"""Items that are left from which on a list is kept beside the state, once for all states of a run."""
 MANY_FLOATS = 1000
-"""Floats from which on a list is kept beside the state: the times of a long program's blocks, which nobody changes."""
-LongLists = dict[int, tuple[Any, str | None]]
-"""By identity: the list itself and its digest, None where it is not kept beside."""
-OF_VALUES = frozenset("ltnegFxTdabfN")
-"""Rows whose objects nobody changes, or only their owner."""
+"""Floats from which on a list is kept beside the state: the times of a long program's blocks, mostly."""
+LongLists = dict[int, tuple[list[float], list[float], str]]
+"""By identity: the list of floats itself, a copy with the same objects, and its digest."""
 AS_THEY_ARE = frozenset((type(None), bool, int, float))
 Place = tuple[Any, str, Any]
 """Where an object was met: the place of what leads to it, and the text of the step from there with its value."""
@@ -179,10 +175,19 @@ class Encoder:
         row += ["t", *self._values(found)]
 
     def _list(self, found: list[Any], row: Row) -> None:
-        if len(found) >= MANY_FLOATS and {*map(type, found)} == {float}:
-            row += ["N", self._kept_beside(base64.b64encode(np.array(found, FLOAT).tobytes()).decode())]
-        else:
-            row += ["l", *self._values(found)]
+        digest = self._floats_beside(found) if len(found) >= MANY_FLOATS else None
+        row += ["l", *self._values(found)] if digest is None else ["N", digest]
+
+    def _floats_beside(self, found: list[Any]) -> str | None:
+        """The digest of a list of floats that is kept beside the states; None where it holds anything else."""
+        known = self._lists.get(id(found))
+        if known is not None and len(known[1]) == len(found) and all(map(is_, known[1], found)):
+            return known[2]
+        if {*map(type, found)} != {float}:
+            return None
+        digest = self._kept_beside(base64.b64encode(np.array(found, FLOAT).tobytes()).decode())
+        self._lists[id(found)] = found, found.copy(), digest
+        return digest
 
     def _set(self, found: set[Any], row: Row) -> None:
         row += ["s", *self._values(in_order(found))]
@@ -231,6 +236,12 @@ class Encoder:
         else:
             self._again("interpreter", interpreter_parts(found), row)
 
+    def _listed_blocks(self, found: ListedBlocks, row: Row) -> None:
+        if found.ended:
+            row += ["i"]
+        else:
+            self._again("list of blocks", list_parts(found), row)
+
     def _again(self, name: str, parts: tuple[Any, ...] | None, row: Row) -> None:
         if parts is None:
             raise not_storable(written(self._place), f"a {name} that cannot be made again")
@@ -244,24 +255,7 @@ class Encoder:
         """Of a list or tuple; what was taken from it is not needed."""
         state = found.__reduce__()
         items, taken = state[1][0], state[2] if len(state) > 2 else 0
-        digest = self._beside(items) if len(items) - taken >= LONG_LIST else None
-        row += ["i", *self._values(items[taken:])] if digest is None else ["I", digest, taken]
-
-    def _beside(self, items: Any) -> str | None:
-        """The digest of a list that is kept beside the states; None where it holds more than values.
-
-        Nobody changes a list of blocks that is being executed, so it is encoded once.
-        """
-        known = self._lists.get(id(items))
-        if known is None:
-            encoder = Encoder(self._roots, self._texts)
-            value = encoder.encode(list(items))
-            digest = None
-            if all(row[0] in OF_VALUES for row in encoder.rows):
-                text = json.dumps([value, encoder.shapes, encoder.rows], separators=(",", ":"))
-                digest = self._kept_beside(text)
-            known = self._lists[id(items)] = items, digest
-        return known[1]
+        row += ["i", *self._values(items[taken:])]
 
     def _count(self, found: Any, row: Row) -> None:
         arguments = found.__reduce__()[1]
@@ -297,6 +291,7 @@ FORMS: dict[type, Form] = {
     Program: Encoder._program,
     StreamedProgram: Encoder._program,
     RunningBlocks: Encoder._interpreter,
+    ListedBlocks: Encoder._listed_blocks,
 }
 
 

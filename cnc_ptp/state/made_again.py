@@ -1,9 +1,10 @@
-"""Objects that are made again instead of stored: programs from their text, interpreters from their program's start."""
+"""Objects that are made again instead of stored: programs from their text, their blocks from their beginning."""
 
 from __future__ import annotations
 
 from typing import Any
 
+from cnc_ptp.channel.listed_blocks import ListedBlocks, ProgramBegin
 from cnc_ptp.channel.running_blocks import RunningBlocks
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.sections import Program
@@ -42,10 +43,23 @@ def interpreter_again(*parts: Any) -> RunningBlocks:
     return blocks
 
 
+def list_parts(blocks: ListedBlocks) -> tuple[Any, ...]:
+    """What `list_again` takes."""
+    return (blocks.begin, blocks.taken)
+
+
+def list_again(begin: ProgramBegin, taken: int) -> ListedBlocks:
+    """One that has given as many blocks. Raises ProgramError, StopIteration if the program has another course now."""
+    blocks = ListedBlocks(begin, begin.known_blocks().blocks)
+    for _ in range(taken):
+        next(blocks)
+    return blocks
+
+
 def is_open(blocks: object) -> bool:
     """An interpreter that has something to give."""
     return isinstance(blocks, RunningBlocks) and not blocks.ended
 
 
-AGAIN = {"program": program_again, "interpreter": interpreter_again}
+AGAIN = {"program": program_again, "interpreter": interpreter_again, "list of blocks": list_again}
 FAULTS = (ProgramError, StopIteration)

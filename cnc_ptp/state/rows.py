@@ -27,7 +27,6 @@ HEADS: Final[dict[str, tuple[Any, ...]]] = {
     "m": (VALUE, str),
     "p": (VALUE, VALUE, ROW),
     "i": (VALUES,),
-    "I": (str, int),
     "N": (str,),
     "c": ((int, float), VALUES),
     "E": (str, VALUE, ROW),

@@ -19,7 +19,7 @@ from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import Command
 from cnc_ptp.state import decoding, machine_state
 from cnc_ptp.state.decoding import Decoder
-from cnc_ptp.state.encoding import Encoder, digest_of
+from cnc_ptp.state.encoding import Encoder, LongLists
 from cnc_ptp.state.machine_state import StateStore
 from cnc_ptp.state.roots import Roots
 
@@ -249,12 +249,29 @@ def test_the_texts_of_the_refusals() -> None:
     )
 
 
-LONG = "\n".join(f"G01 X{place % 40} Y{place % 7} F3000" for place in range(2000)) + "\nM30"
+SKIPPED = "\n".join(f"{'/' * (place % 3 == 0)} G01 X{place % 40} Y{place % 7} F3000" for place in range(2000)) + "\nM30"
 
 
-def test_blocks_of_a_long_program_are_kept_once_beside_the_states() -> None:
-    require_same_continuation(MILL, entries(LONG), seed="long", places=4, follow=40, seconds=6.0)
-    offline = OfflineMachine(MILL, build_units(MILL, scenario=entries(LONG)))
+def commands(*given: tuple[float, str, dict[str, object]]) -> list[Entry]:
+    return [Entry(at, Command("channel", command, arguments)) for at, command, arguments in given]
+
+
+LONG_RUNS = {
+    "from its beginning": entries(SKIPPED),
+    "without the skipped blocks, which count again meanwhile": [
+        *commands((0.0, "block_skip", {"enabled": True})),
+        *entries(SKIPPED),
+        *commands((0.3, "block_skip", {"enabled": False})),
+    ],
+    "from a line": [entries(SKIPPED)[0], *commands((0.1, "start", {"line": 700}))],
+    "manual": commands((0.0, "mdi", {"text": SKIPPED.replace("M30", "")})),
+}
+
+
+@pytest.mark.parametrize("given", LONG_RUNS.values(), ids=LONG_RUNS.keys())
+def test_blocks_of_a_long_program_are_made_again(given: list[Entry]) -> None:
+    require_same_continuation(MILL, given, seed="long", places=4, follow=40, seconds=6.0)
+    offline = OfflineMachine(MILL, build_units(MILL, scenario=given))
     store, sizes, counts = StateStore(MILL), [], []
     for _ in range(3):
         for _ in range(50):
@@ -262,16 +279,21 @@ def test_blocks_of_a_long_program_are_kept_once_beside_the_states() -> None:
         sizes.append(len(store.encode(offline)))
         counts.append(len(store.texts))
     assert counts == [counts[0]] * 3 and max(sizes) < 60_000
+
+
+def test_a_long_program_with_another_text_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    offline = OfflineMachine(MILL, build_units(MILL, scenario=entries(SKIPPED)))
+    for _ in range(50):
+        offline.tick()
+    store = StateStore(MILL)
     state = store.encode(offline)
-    beside = next(digest for digest, text in store.texts.items() if text.startswith("[["))
-    for text, reason in WRONG_LISTS.items():
-        wrong = StateStore(MILL)
-        wrong.texts = {**store.texts, beside: text}
-        with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(decoding, "digest_of", lambda found, text=text: beside if found == text else digest_of(found))
-            assert refusal(wrong, state) == (
-                f"P-ERR-26151 checkpoint: the state is damaged: {reason}; nothing was restored"
-            )
+    [digest] = [digest for digest, text in store.texts.items() if text == SKIPPED]
+    monkeypatch.setattr(decoding, "digest_of", lambda _text: digest)
+    for text, fault in (("M30", "; nothing"), ("G01 X9999 F3000\nM30", ": P-ERR-120002 waiting.nc line 1")):
+        store.texts[digest] = text.ljust(600)
+        assert refusal(store, state).startswith(
+            f"P-ERR-26151 checkpoint: the state is damaged: the list of blocks cannot be made again{fault}"
+        )
 
 
 def test_very_many_floats_are_kept_beside_the_state_to_the_bit(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -297,11 +319,19 @@ def test_very_many_floats_are_kept_beside_the_state_to_the_bit(monkeypatch: pyte
         )
 
 
-WRONG_LISTS = {
-    "[": "a list: Expecting value: line 1 column 2 (char 1)",
-    "{}": "a list beside it has no form",
-    '[[0],[],[["t"]]]': "a list beside it is none",
-}
+def test_floats_that_have_changed_are_kept_again() -> None:
+    numbers = [place / 3 for place in range(1000)]
+    texts: dict[str, str] = {}
+    lists: LongLists = {}
+    roots = Roots({})
+    for _ in range(2):
+        Encoder(roots, texts, lists=lists).encode(numbers)
+        assert len(texts) == 1
+    numbers[3] = -0.0
+    encoder = Encoder(roots, texts, lists=lists)
+    value = encoder.encode(numbers)
+    again = Decoder(encoder.rows, encoder.shapes, roots, texts).decode(value)
+    assert len(texts) == 2 and math.copysign(1.0, again[3]) == -1.0
 
 
 def refusal(store: StateStore, state: bytes) -> str:

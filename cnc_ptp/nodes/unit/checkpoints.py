@@ -15,14 +15,11 @@ from cnc_ptp.machine.runner import UnitRunner
 from cnc_ptp.nodes import convert
 from cnc_ptp.nodes.topics import CHECKPOINTS, STATES_OF_UNITS
 from cnc_ptp.parameters import MachineParameters
-from cnc_ptp.protocol.blocks import ChannelBlock, CycleBlock
+from cnc_ptp.protocol.blocks import CycleBlock
 from cnc_ptp.protocol.unit import PLC
-from cnc_ptp.state.faults import not_storable
 from cnc_ptp.state.machine_state import StateStore, kernel_digest
 from cnc_ptp.wire.stamps import Stamps
 
-MOST_BLOCKS = 1000
-"""Of a program in real time: its blocks are most of a state, and storing so many takes some 30 ms."""
 MOST_LISTS = 8
 """Long lists whose digests are remembered; those of programs that are gone are forgotten with all others."""
 
@@ -43,18 +40,12 @@ class UnitCheckpoints:
         """The unit has computed and published all blocks before a cycle."""
         return next_cycle >= self._next
 
-    def publish(self, runner: UnitRunner, block: CycleBlock, stamps: Stamps, *, paced: bool) -> None:
-        """The state of the unit after a block, `paced`: in real time.
-
-        Raises CncError 26150 where it cannot be stored, or not in time.
-        """
+    def publish(self, runner: UnitRunner, block: CycleBlock, stamps: Stamps) -> None:
+        """The state of the unit after a block. Raises CncError 26150 where it cannot be stored."""
         self._next = runner.next_cycle + self._cycles
         if not self._publisher.get_subscription_count():
             return
         name = runner.unit.name
-        if paced and isinstance(block, ChannelBlock) and block.blocks_total > MOST_BLOCKS:
-            reason = f"a program of {block.blocks_total} blocks, which would hold up a machine in real time"
-            raise not_storable(name, reason)
         units = {} if name == PLC else {name: runner}  # a recording has the commands of the PLC
         state = self._store.encode_units(runner.next_cycle, units, {name: block})
         texts = [text for digest, text in self._store.texts.items() if digest not in self._told]

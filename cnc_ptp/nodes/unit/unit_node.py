@@ -468,7 +468,7 @@ class UnitNode(PollingNode):
         """An event for the first one that cannot be stored; later ones may be those of another program."""
         try:
             with self._working():
-                checkpoints.publish(self._runner, block, self._stamps, paced=self.paced)
+                checkpoints.publish(self._runner, block, self._stamps)
         except CncError as error:
             if not self._has_told_state:
                 self._has_told_state = True
