@@ -11,19 +11,18 @@ from itertools import count as numbers
 from typing import Any, ClassVar, NoReturn
 
 from cnc_ptp.channel.axis_homing import AxisHoming
-from cnc_ptp.channel.block_stream import BlockStream
 from cnc_ptp.channel.cycle_rows import CycleRows
 from cnc_ptp.channel.feed_per_turn import FeedPerTurn
 from cnc_ptp.channel.function_output import FunctionOutput
-from cnc_ptp.channel.listed_blocks import ListedBlocks, ProgramBegin
 from cnc_ptp.channel.measuring import Measuring
 from cnc_ptp.channel.offset_memory import OffsetMemory
 from cnc_ptp.channel.path_axes import NOT_AT_END, PathAxes
 from cnc_ptp.channel.path_spindle import PathSpindle
-from cnc_ptp.channel.program_check import PreparedProgram, ProgramCheck, ProgramState
+from cnc_ptp.channel.program_check import ProgramCheck, ProgramState
+from cnc_ptp.channel.program_memory import ProgramMemory
 from cnc_ptp.channel.program_sequence import NO_SOURCE, OFF_PATH, Phase, ProgramSequence
 from cnc_ptp.channel.program_start import NOTHING_STARTED, ProgramStart, start_point
-from cnc_ptp.channel.program_times import NO_TIMES, ProgramProgress, block_times
+from cnc_ptp.channel.program_times import NO_TIMES, ProgramProgress
 from cnc_ptp.channel.program_view import ProgramView
 from cnc_ptp.channel.running_blocks import RunningBlocks
 from cnc_ptp.channel.supervision import Finding, Supervision
@@ -32,13 +31,9 @@ from cnc_ptp.channel.time_estimate import TimeEstimate
 from cnc_ptp.channel.timers import Timers
 from cnc_ptp.channel.waits import Outgoing
 from cnc_ptp.errors import NO_VALUES, CncError, Value
-from cnc_ptp.nc.expressions.values import Variable
 from cnc_ptp.nc.faults import ProgramError, line_of_program
 from cnc_ptp.nc.flow.sections import Program
-from cnc_ptp.nc.modal_state import Pairs
 from cnc_ptp.nc.parser import NO_FILES
-from cnc_ptp.nc.program import Vocabulary
-from cnc_ptp.nc.vocabularies import VOCABULARIES
 from cnc_ptp.nc.vocabulary import MAX_SKIP_LEVEL
 from cnc_ptp.parameters import AxisParameters, ChannelParameters, SpindleParameters
 from cnc_ptp.parameters.view.homing_view import IGNORE_ABSOLUTE
@@ -111,22 +106,12 @@ class ChannelUnit(Unit):
         timers, spindle = Timers(cycle_time), self._path_spindle
         self._sequence = ProgramSequence(self._motion, functions, nodes, homing, measuring, timers, spindle)
         self._watch = Supervision(parameters, self._sequence, self._motion, self._axes, feed_per_turn)
-        self._estimate = TimeEstimate(self._motion, functions)
         self._check = ProgramCheck(parameters, axes, spindles)
         self._offsets = OffsetMemory(parameters.name, self._check.nc)
-        self._vocabulary = self._check.vocabulary
-        """That of the last load; manual blocks are read in it."""
-        self._program: Program | None = None
-        self._prepared: PreparedProgram | None = None
-        self._state = self._check.state({}, {}, {})
-        """The state in which an MDI text starts: that of the previous one, if it was carried out in full."""
-        self._state_at_end: ProgramState | None = None
-        self._is_mdi = False
+        estimate = TimeEstimate(self._motion, functions)
+        self._programs = ProgramMemory(self._check, self._offsets, estimate, parameters.blocks_per_cycle)
         self._progress = ProgramProgress(NO_TIMES, 0)
         self._turning_after_reset = {node for node, spindle in spindles.items() if not spindle.stops_at_reset}
-        self._links: dict[int, Pairs] = {}
-        """Coupling groups that programs have defined; they are kept for the next one, as V.S. is."""
-        self._shared: dict[str, Variable] = {}
         self._commands_sent = 0
         self._just_started = False
         self._unfinished = False
@@ -144,25 +129,12 @@ class ChannelUnit(Unit):
         """The last start has resumed a program."""
         self._apply_override()
 
-    def _initial_state(self, feedback: Mapping[str, CycleBlock]) -> ProgramState:
-        """The state in which a program starts."""
-        return self._check.state(feedback, self._links, self._shared, self._offsets.changes, self._offsets.clamp_index)
-
     def prepare(self, program: str, text: str, files: Mapping[str, str] = NO_FILES, dialect: str | None = None) -> None:
         """Parses and interprets ahead of time what `load` and `start` then find ready. Raises ProgramError.
 
         A program that is read while it runs has nothing to be prepared but the first look at it.
         """
-        parsed = self._check.parse(text, program, files, dialect)
-        if parsed.streamed:
-            return
-        state = self._initial_state(self._feedback)
-        before = state.copy()
-        start = self._motion.position
-        known = self._check.known_ahead(parsed, start, state)
-        times = block_times(self._estimate, known.blocks, start, known.total)
-        skip = self._check.block_skip
-        self._prepared = PreparedProgram(text, dict(files), parsed, start, before, state, known, times, skip)
+        self._programs.prepare(program, text, files, dialect, self._motion.position, self._feedback)
 
     # commands
 
@@ -190,17 +162,8 @@ class ChannelUnit(Unit):
         self._require_idle("load")
         if text is None:
             self._refuse("load", NO_TEXT, f"no text came with program '{program}'", program=program)
-        prepared, vocabulary = self._prepared, self._vocabulary_of(dialect)
-        if prepared is not None and prepared.is_of(text, files, program, vocabulary):
-            self._program = prepared.program
-        else:
-            self._program = self._check.parse(text, program, files, dialect)
-        if vocabulary is not self._vocabulary:
-            self._vocabulary, self._state = vocabulary, self._initial_state({})
+        self._programs.load(program, text, files, dialect)
         self._sequence.source = NO_SOURCE
-
-    def _vocabulary_of(self, dialect: str | None) -> Vocabulary:
-        return self._check.vocabulary if dialect is None else VOCABULARIES[dialect]
 
     def do_start(
         self,
@@ -225,14 +188,15 @@ class ChannelUnit(Unit):
             self._resumed = True
             return
         self._require_idle("start")
-        if self._program is None:
+        program = self._programs.loaded
+        if program is None:
             self._refuse("start", NO_PROGRAM, "no program is loaded")
-        begin = None if point is None else ProgramStart(point, self._program)
+        begin = None if point is None else ProgramStart(point, program)
         position = self._motion.position
-        self._begin(cycle, "start", self._program, self._initial_state(self._feedback), begin)
+        self._begin(cycle, "start", program, self._programs.initial_state(self._feedback), begin)
         self._resumed = False
         self._sequence.end_couplings()
-        if self._program.streamed:
+        if program.streamed:
             size = f"more than {self._parameters.checked_text} characters (P-CHAN-90005)"
             self.event(cycle, Severity.INFO, START_STEP, f"the program has {size}: it is checked while it runs")
         for step in () if begin is None else begin.lines(self._check.axis_names, position):
@@ -244,22 +208,20 @@ class ChannelUnit(Unit):
         It may call `files`, texts by name, and what the loaded program may call.
         """
         self._require_idle("mdi")
-        state = self._state.copy()
-        state.modal.spindle.gears = self._check.gears(self._feedback)
-        program = self._check.parse_manual(text, files, self._vocabulary, self._program)
-        self._begin(cycle, "mdi", program, state)
+        program = self._programs.parse_manual(text, files)
+        self._begin(cycle, "mdi", program, self._programs.manual_state(self._feedback))
 
     def do_set_zero_offset(self, cycle: int, *, index: int, axis: str, value: float) -> None:
         """A value (mm, deg) of a zero offset; it counts when the offset is selected next."""
         self._require_idle("set_zero_offset")
         place = self._offsets.place("set_zero_offset", axis)
         self._offsets.set("set_zero_offset", index, {place: value})
-        self._offsets.give(self._state.modal.coordinates)
+        self._offsets.give(self._programs.state.modal.coordinates)
 
     def do_teach_zero_offset(self, cycle: int, *, index: int, axis: str = "", value: float = 0.0) -> None:
         """The present position of an axis, or of all, becomes `value` (mm, deg) in a zero offset."""
         self._require_idle("teach_zero_offset")
-        coordinates = self._state.modal.coordinates
+        coordinates = self._programs.state.modal.coordinates
         self._offsets.teach("teach_zero_offset", index, axis, value, self._motion.position, coordinates)
         self._offsets.give(coordinates)
 
@@ -267,7 +229,7 @@ class ChannelUnit(Unit):
         """The clamp position of programs that are started from now on."""
         self._require_idle("set_clamp_position")
         self._offsets.choose_clamp_position("set_clamp_position", index)
-        self._offsets.give(self._state.modal.coordinates)
+        self._offsets.give(self._programs.state.modal.coordinates)
 
     def do_feed_hold(self, cycle: int, *, enabled: bool) -> None:
         """Feed hold: the path stops on its ramp, and resumes when the hold is off."""
@@ -382,13 +344,11 @@ class ChannelUnit(Unit):
         self._axes.give(rows.axes[count - 1][: len(self._axes.nodes)], on_path=on_path)
         self._element_begins = begins_element(*rows.distance_to_go[count - 1 :])
         self._update_progress()
-        if self._sequence.finished and self._state_at_end is not None:
-            ended, self._state_at_end = self._state_at_end, None
-            self._shared, self._offsets.changes = ended.values.shared, ended.modal.coordinates.changes
-            self._state = ended if self._is_mdi else self._initial_state({})
+        if self._sequence.finished:
+            self._programs.finish()
         self._unfinished = self._sequence.phase in OFF_PATH and rows.axes[count - 1] != self._motion.states
         if self._sequence.phase is Phase.IDLE:
-            self._offsets.rest(first_cycle + count, self._state.modal)
+            self._offsets.rest(first_cycle + count, self._programs.state.modal)
         block = self._channel_block(tick, rows, outgoing, path_active=on_path)
         if spindle:
             add_spindle(block, spindle, rows.spindle[:count])
@@ -413,9 +373,10 @@ class ChannelUnit(Unit):
         if sequence.phase in (Phase.IDLE, Phase.RAMP_DOWN):
             self._progress.end(finished=sequence.finished)
             return
-        in_file = self._program is not None and sequence.source.file == self._program.file
+        loaded = self._programs.loaded
+        in_file = loaded is not None and sequence.source.file == loaded.file
         line = sequence.source.line if in_file else 0
-        if self._program is not None and self._program.streamed:
+        if loaded is not None and loaded.streamed:
             line = sequence.stream.read + 1
         self._progress.update(sequence.stream.done, self._motion, line, begun=sequence.motion_begun)
 
@@ -424,8 +385,8 @@ class ChannelUnit(Unit):
         """Which program the channel has, and where it is."""
         source = self._sequence.source
         return ProgramView(
-            program="" if self._program is None else self._program.file,
-            manual=self._is_mdi and self._sequence.phase is not Phase.IDLE,
+            program="" if self._programs.loaded is None else self._programs.loaded.file,
+            manual=self._programs.manual and self._sequence.phase is not Phase.IDLE,
             file=source.file,
             text=source.text.strip(),
             calls=self._sequence.calls,
@@ -566,12 +527,22 @@ class ChannelUnit(Unit):
         if self._sequence.homing_held:
             return C.HOLD
         if phase is Phase.IDLE:
-            return C.IDLE if self._program is None else C.READY
+            return C.IDLE if self._programs.loaded is None else C.READY
         return PHASE_STATES[phase]
 
     def _begin(
         self, cycle: int, command: str, program: Program, state: ProgramState, begin: ProgramStart | None = None
     ) -> None:
+        self._require_axes(command)
+        unreferenced, manual = self._axes.unreferenced(self._feedback), command == "mdi"
+        started = self._programs.start(program, self._motion.position, state, unreferenced, begin, manual=manual)
+        self._offsets.begin(cycle, started.before.modal)
+        self._progress = ProgramProgress(started.times, program.size)
+        self._sequence.begin(started.stream, program=not manual)
+        self._just_started = True
+
+    def _require_axes(self, command: str) -> None:
+        """The axes of the path stand, are where their coordinates say, and publish, as the spindles do."""
         for node, axis_state in self._axes.states.items():
             if axis_state != AxisStateCode.STANDSTILL:
                 self._refuse(
@@ -590,40 +561,6 @@ class ChannelUnit(Unit):
         for node in self._axes.shifted(self._feedback):
             reason = f"the coordinates of axis {node} are not those of the machine (set_position)"
             self._refuse(command, COORDINATES_SHIFTED, f"{reason}; shift them back or home the axis", axis=node)
-        before = state.copy()
-        unreferenced = self._axes.unreferenced(self._feedback)
-        start = self._motion.position
-        ready = None if unreferenced or begin is not None else self._ready(command, program, state)
-        if ready is not None:
-            known, state, times = ready.known, ready.at_end, ready.times
-        else:
-            known = self._check.known_blocks(program, start, state, unreferenced, begin)
-            times = block_times(self._estimate, known.blocks, start, known.total)
-        point = None if begin is None else begin.point
-        if known.complete:
-            skip = self._check.block_skip
-            begins = ProgramBegin(self._check, program, tuple(start), before, tuple(unreferenced), point, skip)
-            stream = BlockStream(ListedBlocks(begins, known.blocks), known.total)
-        else:
-            state = before
-            blocks = RunningBlocks(self._check, program, tuple(start), state, tuple(unreferenced), point)
-            place = program.place if program.streamed else None
-            stream = BlockStream(blocks, known.total, self._parameters.blocks_per_cycle, place)
-        self._links = state.modal.spindle.links
-        self._state = self._initial_state({})
-        self._state_at_end, self._is_mdi = state, command == "mdi"
-        self._offsets.begin(cycle, before.modal)
-        self._progress = ProgramProgress(times, program.size)
-        self._sequence.begin(stream, program=command == "start")
-        self._just_started = True
-
-    def _ready(self, command: str, program: Program, state: ProgramState) -> PreparedProgram | None:
-        """What was interpreted ahead, if that was from the present positions and state."""
-        ready = self._prepared
-        if ready is None or command != "start" or ready.program is not program or not ready.before.same_as(state):
-            return None
-        same_way = ready.start == self._motion.position and ready.block_skip == self._check.block_skip
-        return ready if same_way else None
 
     # override, feedback, faults
 

@@ -11,7 +11,6 @@ from cnc_ptp.axis.faults import CHANNEL_HAS_IT, HOMING_DISABLED, SOFT_LIMIT_NEGA
 from cnc_ptp.axis.parameter_commands import OF_THE_PATH
 from cnc_ptp.channel.control_functions import place_of
 from cnc_ptp.channel.program_start import ProgramStart
-from cnc_ptp.channel.program_times import BlockTimes
 from cnc_ptp.channel.thread_reading import ThreadReading
 from cnc_ptp.control.commands import NO_FRICTION_COMPENSATION
 from cnc_ptp.errors import CncError, Value
@@ -98,28 +97,6 @@ class KnownBlocks(NamedTuple):
     blocks: list[CanonicalBlock]
     complete: bool
     total: int | None
-
-
-class PreparedProgram(NamedTuple):
-    """A program that was interpreted ahead of its load, from the position `start` and the state `before`.
-
-    `block_skip`: the levels that were skipped; `times` of its motions.
-    """
-
-    text: str
-    files: dict[str, str]
-    program: Program
-    start: tuple[float, ...]
-    before: ProgramState
-    at_end: ProgramState
-    known: KnownBlocks
-    times: BlockTimes
-    block_skip: int
-
-    def is_of(self, text: str, files: Mapping[str, str], file: str, vocabulary: Vocabulary) -> bool:
-        """Whether a load with these arguments means this program."""
-        same = (self.text, self.files, self.program.file) == (text, files, file)
-        return same and self.program.vocabulary is vocabulary
 
 
 class ProgramCheck:

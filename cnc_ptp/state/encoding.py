@@ -42,6 +42,7 @@ from typing import Any
 import numpy as np
 
 from cnc_ptp.channel.listed_blocks import ListedBlocks
+from cnc_ptp.channel.program_memory import PreparedProgram
 from cnc_ptp.channel.running_blocks import RunningBlocks
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.streamed_program import StreamedProgram
@@ -112,6 +113,8 @@ class Encoder:
             return found
         if kind is str:
             return self._text(found) if len(found) >= LONG_TEXT else found
+        if kind is PreparedProgram:  # it is interpreted again when it starts
+            return None
         number = self._number.get(id(found))
         if number is None:
             number = self._new_row(found)

@@ -79,9 +79,9 @@ def test_what_was_prepared_counts_for_its_vocabulary_only() -> None:
     unit.prepare("a.nc", "G20\nM30", dialect="iso")
     channel = UnitBench(unit)
     channel.accepted("load", program="a.nc", text="G20\nM30")
-    assert unit._program.vocabulary.name == "twincat"
+    assert unit._programs.loaded.vocabulary.name == "twincat"
     channel.accepted("load", program="a.nc", text="G20\nM30", dialect="iso")
-    assert unit._program.vocabulary is ISO
+    assert unit._programs.loaded.vocabulary is ISO
 
 
 def test_a_run_with_a_dialect_is_the_same_in_a_replay() -> None:

@@ -111,7 +111,9 @@ def test_examples_take_as_long_as_estimated(machine: str, file: str, dialect: st
     moving = np.any([np.array(bench.column(axis.node, "set_velocity")) != 0.0 for axis in channel.axes], axis=0)
     unit = bench.units[channel.name]
     unit.prepare(file, *read_program(path, program_search(parameters)), dialect)
-    dwells = [block.motion.seconds for block in unit._prepared.known.blocks if isinstance(block.motion, Dwell)]
+    dwells = [
+        block.motion.seconds for block in unit._programs._prepared.known.blocks if isinstance(block.motion, Dwell)
+    ]
     run = np.count_nonzero(moving) * parameters.cycle_time_us * 1e-6 + sum(dwells)
     assert estimate(bench) == pytest.approx(run, rel=0.02)
     assert_progress(bench)
@@ -121,7 +123,11 @@ def estimated(text: str) -> tuple[float, float]:
     """Seconds of a program: as it is estimated, and planned as a whole."""
     unit = MachineBench(text, start=False).units["channel"]
     unit.prepare("test.nc", text)
-    known, start, estimate = unit._prepared.known.blocks, unit._prepared.start, unit._estimate
+    known, start, estimate = (
+        unit._programs._prepared.known.blocks,
+        unit._programs._prepared.start,
+        unit._programs._estimate,
+    )
     places = time_estimate.places_of(known, start)
     return sum(estimate.seconds(known, start)), sum(estimate._planned(known, places, estimate._sketch(known, places)))
 

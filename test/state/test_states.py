@@ -9,8 +9,9 @@ import struct
 
 import pytest
 from machine_support import MILL, ROOT
-from state_support import Run, outputs_of, require_same_continuation
+from state_support import Run, outputs_of, require_same_continuation, texts
 
+from cnc_ptp.channel.channel_unit import ChannelUnit
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.wiring import build_units
@@ -279,6 +280,24 @@ def test_blocks_of_a_long_program_are_made_again(given: list[Entry]) -> None:
         sizes.append(len(store.encode(offline)))
         counts.append(len(store.texts))
     assert counts == [counts[0]] * 3 and max(sizes) < 60_000
+
+
+def test_what_was_prepared_is_no_part_of_a_state() -> None:
+    """Neither before its start nor behind it; a channel that lacks it interprets the program when it starts."""
+    units = build_units(MILL, scenario=[*entries(SKIPPED)[:1], *commands((0.2, "start", {}))])
+    channel = units["channel"]
+    assert isinstance(channel, ChannelUnit)
+    channel.prepare("waiting.nc", SKIPPED)
+    prepared = OfflineMachine(MILL, units)
+    store = StateStore(MILL)
+    for _ in range(2):
+        for _ in range(15):
+            prepared.tick()
+        state = store.encode(prepared, with_plc=True)
+        assert len(state) < 60_000
+        restored = OfflineMachine(MILL, build_units(MILL))
+        restored.go_on_from(*store.restore(state))
+        assert [texts(restored.tick()) for _ in range(40)] == [texts(prepared.tick()) for _ in range(40)]
 
 
 def test_a_long_program_with_another_text_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
