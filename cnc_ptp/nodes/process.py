@@ -12,7 +12,7 @@ from contextlib import redirect_stdout, suppress
 from io import StringIO
 from pathlib import Path
 from typing import Any
-from weakref import WeakKeyDictionary
+from weakref import WeakKeyDictionary, WeakSet
 
 import rclpy
 from rclpy.clock import Clock
@@ -159,13 +159,14 @@ class SteadyTimer:
         self._timer.cancel()
 
 
-_timers: WeakKeyDictionary[Node, list[SteadyTimer]] = WeakKeyDictionary()
+_timers: WeakKeyDictionary[Node, WeakSet[SteadyTimer]] = WeakKeyDictionary()
+"""Timers call methods of their nodes, and so hold them; each node holds its own."""
 
 
 def timer(node: Node, period: float, call: Callable[[], None]) -> SteadyTimer:
     """Calls each `period` (s), whatever becomes of the wall clock."""
     made = SteadyTimer(node, period, call)
-    _timers.setdefault(node, []).append(made)
+    _timers.setdefault(node, WeakSet()).add(made)
     return made
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gc
 import time
+import weakref
 from itertools import pairwise
 
 import pytest
@@ -41,3 +43,26 @@ def test_one_that_was_cancelled_is_not(node):
     end = time.monotonic() + 0.3
     process.spin([node], done=lambda: time.monotonic() > end, wait=lambda: 0.005)
     assert called == [None]
+
+
+class Counting(Standing):
+    """Its timer calls a method of the node, as all of ours do."""
+
+    called = 0
+
+    def count(self):
+        self.called += 1
+
+
+def run_and_end():
+    """A node that has run, of which nobody keeps more than this."""
+    node = Counting("counting")
+    process.timer(node, 0.01, node.count)
+    process.spin([node], done=lambda: node.called > 0, wait=lambda: 0.005)
+    return weakref.ref(node)
+
+
+def test_they_do_not_keep_a_node_that_is_gone(node):
+    gone = run_and_end()
+    gc.collect()
+    assert gone() is None
