@@ -136,7 +136,8 @@ class OfflineLink(Link):
         elif command == "stop":
             recorder.stop(answers.append)
         else:
-            recorder.snapshot(arguments["file"], arguments.get("seconds", 0.0), answers.append)
+            seconds, until = (arguments.get(name, 0.0) for name in ("seconds", "until"))
+            recorder.snapshot(arguments["file"], seconds, until, answers.append)
         recorder.settle(self.now)
         self._take_events_of_recorder()
 

@@ -74,7 +74,15 @@ class LastSeconds:
 
     def begin_of_block(self, cycle: int) -> int:
         """The first cycle of the block in which `cycle` is."""
-        return max((item.cycle for item in self._items if item.method == TICK and item.cycle <= cycle), default=cycle)
+        return max((first for first in self._first_cycles() if first <= cycle), default=cycle)
+
+    def end_of_block(self, cycle: int, newest: int) -> int:
+        """The first block that begins at or after `cycle` begins there; `newest` if none is kept."""
+        return min((first for first in self._first_cycles() if first >= cycle), default=newest)
+
+    def _first_cycles(self) -> Iterator[int]:
+        """Of the blocks, by their ticks."""
+        return (item.cycle for item in self._items if item.method == TICK)
 
     def between(self, begin: int, end: int) -> list[Item]:
         """In the order in which they came; `end` is excluded."""

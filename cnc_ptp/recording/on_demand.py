@@ -45,6 +45,7 @@ SNAPSHOT_TAKEN = 26194
 SNAPSHOT_FAILED = 26195
 BAD_SECONDS = 26197
 RECORDING_BEGUN = 26220
+REFUSED = f"{RECORDER}: snapshot refused"
 LONGEST = 86400.0
 """Seconds that may be asked for."""
 NOT_CHANGED = "nothing was changed"
@@ -266,20 +267,33 @@ class OnDemand:
         self._end = self._newest
         self._jobs.append(Job(self._newest, self._close_current, done))
 
-    def snapshot(self, file: str, seconds: float, done: Done) -> None:
-        """Writes the last `seconds`, 0 or NaN: all that is kept. Raises CncError 26113, 26192, 26193, 26197."""
-        refused = f"{RECORDER}: snapshot refused"
-        seconds = 0.0 if math.isnan(seconds) else seconds
+    def snapshot(self, file: str, seconds: float, until: float, done: Done) -> None:
+        """Writes the `seconds` before the time `until` of the machine.
+
+        `seconds` 0 or NaN: all that is kept before it. `until` 0 or NaN: now.
+        Raises CncError 26113, 26192, 26193, 26197.
+        """
+        seconds, until = (0.0 if math.isnan(each) else each for each in (seconds, until))
         if not 0.0 <= seconds <= LONGEST:
             reason = f"seconds = {seconds:g} is not within 0 ... {LONGEST:g} s"
-            raise CncError(BAD_SECONDS, reason, NOT_CHANGED, where=refused, seconds=seconds, high=LONGEST)
+            raise CncError(BAD_SECONDS, reason, NOT_CHANGED, where=REFUSED, seconds=seconds, high=LONGEST)
         if self._kept is None:
             reason = "nothing is kept in memory; `cnc_ptp run` keeps the last seconds with --keep"
-            raise CncError(NOTHING_KEPT, reason, NOT_CHANGED, where=refused)
-        if self._kept.first_whole(self._next) is None:
-            raise CncError(NOTHING_KEPT, "no block of all units has come yet", NOT_CHANGED, where=refused)
-        require_new(file, where=refused)
-        self._ask_for_snapshot(file, seconds, self._newest, done)
+            raise CncError(NOTHING_KEPT, reason, NOT_CHANGED, where=REFUSED)
+        whole = self._kept.first_whole(self._next)
+        if whole is None:
+            raise CncError(NOTHING_KEPT, "no block of all units has come yet", NOT_CHANGED, where=REFUSED)
+        if until:
+            self._require_kept(until, whole)
+        require_new(file, where=REFUSED)
+        self._ask_for_snapshot(file, seconds, self._cycles(until) if until else self._newest, done)
+
+    def _require_kept(self, until: float, whole: int) -> None:
+        """Raises CncError 26197 where no cycle from `whole` on is before `until`, or it is in the future."""
+        low, high, half = (cycles * self.stamps.cycle_time_ns * 1e-9 for cycles in (whole + 1, self._newest, 0.5))
+        if not low - half < until < high + half:
+            reason = f"until = {until:.10g} is not within {low:.10g} ... {high:.10g} s, which are kept"
+            raise CncError(BAD_SECONDS, reason, NOT_CHANGED, where=REFUSED, until=until, low=low, high=high)
 
     def fail(self, error: CncError, cycle: int) -> None:
         """The present recording could not be written: it gets its end, if there is room for it; tells so."""
@@ -323,11 +337,11 @@ class OnDemand:
 
     # carrying out
 
-    def _ask_for_snapshot(self, file: str, seconds: float, end: int, done: Done) -> None:
+    def _ask_for_snapshot(self, file: str, seconds: float, until: int, done: Done) -> None:
         def carry_out() -> Future[Answer]:
-            return self._write_snapshot(file, seconds, min(end, self._newest))
+            return self._write_snapshot(file, seconds, min(until, self._newest))
 
-        self._jobs.append(Job(end, carry_out, done))
+        self._jobs.append(Job(until, carry_out, done))
 
     def carry_out(self, now: float) -> None:
         """What is due of what was asked for; `now` as of flush_if_due."""
@@ -361,21 +375,22 @@ class OnDemand:
 
     def _close_current(self) -> Future[Answer]:
         """At once: whoever starts the next one must find this one closed."""
-        answer = Answer(int(self._end))
         try:
             self._end_current()
         except CncError as error:
-            answer = Answer(error=error)
-        future: Future[Answer] = Future()
-        future.set_result(answer)
-        return future
+            return known(Answer(error=error))
+        return known(Answer(int(self._end)))
 
-    def _write_snapshot(self, file: str, seconds: float, end: int) -> Future[Answer]:
+    def _write_snapshot(self, file: str, seconds: float, until: int) -> Future[Answer]:
         """In a thread of its own: in one process with all other nodes nothing may wait for it."""
         assert self._kept is not None
         whole = self._kept.first_whole(self._next) or 0
-        wanted = self._kept.begin_of_block(end - self._cycles(seconds or self._snapshots.keep))
-        begin = max(wanted, whole)
+        try:
+            self._require_kept(until * self.stamps.cycle_time_ns * 1e-9, whole)  # since it was asked for, some has gone
+        except CncError as error:
+            return known(Answer(error=error))
+        wanted = self._kept.begin_of_block(until - self._cycles(seconds or self._snapshots.keep))
+        begin, end = max(wanted, whole), self._kept.end_of_block(until, self._newest)
         states = self._states.between(begin, end)
         kept = Kept(self._history.before(end), states, dict(self._texts), self._kept.between(begin, end))
         warning = ""
@@ -406,6 +421,13 @@ class OnDemand:
 
     def _cycles(self, seconds: float) -> int:
         return round(seconds * 1e9 / self.stamps.cycle_time_ns)
+
+
+def known(answer: Answer) -> Future[Answer]:
+    """That need not be waited for."""
+    future: Future[Answer] = Future()
+    future.set_result(answer)
+    return future
 
 
 def begun_file(error_id: int, text: str) -> str:

@@ -82,8 +82,8 @@ class Story:
         self.recorder.stop(self.answers.append)
         return self
 
-    def snapshot(self, file, seconds=0.0):
-        self.recorder.snapshot(str(file), seconds, self.answers.append)
+    def snapshot(self, file, seconds=0.0, until=0.0):
+        self.recorder.snapshot(str(file), seconds, until, self.answers.append)
         return self
 
     def refused(self, call, *arguments):
@@ -143,6 +143,70 @@ def test_a_snapshot_of_more_than_is_kept_says_so(tmp_path):
     [answer] = story.answers
     assert answer.warning == "recorder: 0.5 s were kept and are in the snapshot, 3 s were asked for"
     assert computed_again(tmp_path / "a.mcap")[1:] == (0, 499)
+
+
+def test_a_snapshot_ends_where_it_is_told_to(tmp_path):
+    """Its window is 1.3 s to 1.605 s; blocks have 10 cycles."""
+    story = Story(keep=2.0).run(2.0)
+    for cycle in (1600, 1609, 1610):
+        story.recorder.event(Event(cycle, "x", Severity.INFO, 0, "an event"))
+    story.snapshot(tmp_path / "a.mcap", 0.305, 1.605).run(0.5)
+    story.recorder.close()
+    assert [(answer.cycle, answer.warning, answer.error) for answer in story.answers] == [(1300, "", None)]
+    recorded, first, last = computed_again(tmp_path / "a.mcap")
+    assert (first, last, recorded.metadata[RECORD_WHEN]) == (1300, 1609, "snapshot of cycles 1300 to 1609")
+    assert recorded.complete
+    assert [record.command for record in recorded.commands] == [
+        "reset",
+        "move_absolute",
+        "set_override",
+        "move_absolute",
+    ]
+    assert [event.cycle for event in recorded.events if event.text == "an event"] == [1600, 1609]
+
+
+def test_a_snapshot_has_commands_up_to_its_end_only(tmp_path):
+    Story(keep=2.0).run(2.0).snapshot(tmp_path / "a.mcap", until=1.5).run(0.5).recorder.close()
+    recorded, first, last = computed_again(tmp_path / "a.mcap")
+    assert (first, last, [record.command for record in recorded.commands]) == (
+        0,
+        1499,
+        ["reset", "move_absolute", "set_override"],
+    )
+
+
+def test_a_snapshot_until_a_time_of_which_a_block_is_late_waits_for_it(tmp_path):
+    story = Story(keep=2.0).run(1.0).snapshot(tmp_path / "a.mcap", 0.1, 0.995)  # the last block of x is late
+    story.run(0.5)
+    story.recorder.close()
+    assert computed_again(tmp_path / "a.mcap")[1:] == (890, 999)
+
+
+@pytest.mark.parametrize("until", [0.0, math.nan])
+def test_without_an_end_a_snapshot_ends_now(tmp_path, until):
+    story = Story(keep=1.0).run(2.0).snapshot(tmp_path / "a.mcap", 0.5, until).run(0.5)
+    story.recorder.close()
+    assert computed_again(tmp_path / "a.mcap")[1:] == (1500, 1999)
+
+
+@pytest.mark.parametrize("until", [-1.0, 0.9, 0.99, 3.001, 1e9, math.inf, -math.inf])
+def test_an_end_of_which_nothing_is_kept_is_refused(tmp_path, until):
+    story = Story(keep=1.0).run(3.0)  # it keeps a second and a block more
+    assert story.refused(story.snapshot, tmp_path / "a.mcap", 0.5, until) == (
+        f"P-ERR-26197 recorder: snapshot refused: until = {until:.10g} is not within 0.991 ... 3 s, which are kept; "
+        "nothing was changed"
+    )
+    assert not [*tmp_path.iterdir()]
+
+
+def test_an_end_whose_cycles_are_forgotten_meanwhile_is_refused(tmp_path):
+    story = Story(keep=1.0).run(3.0).snapshot(tmp_path / "a.mcap", 0.5, 1.05).run(0.5)
+    story.recorder.close()
+    assert [str(answer.error) for answer in story.answers] == [
+        "P-ERR-26197 recorder: snapshot refused: until = 1.05 is not within 1.201 ... 3.21 s, which are kept; "
+        "nothing was changed"
+    ]
+    assert not [*tmp_path.iterdir()]
 
 
 def test_a_snapshot_is_taken_of_what_led_to_an_error(tmp_path):

@@ -87,8 +87,8 @@ class Graph:
             self.recorder.checkpoint_texts(self._store.texts)
         self.recorder.carry_out(cycle * 1e-3)
 
-    def snapshot(self, file: Path, seconds: float = 0.0) -> Graph:
-        self.recorder.snapshot(str(file), seconds, self.answers.append)
+    def snapshot(self, file: Path, seconds: float = 0.0, until: float = 0.0) -> Graph:
+        self.recorder.snapshot(str(file), seconds, until, self.answers.append)
         return self
 
     def close(self) -> None:
@@ -129,6 +129,17 @@ def test_a_snapshot_has_the_whole_checkpoints_of_its_time_and_the_newest_before(
     for begin, note in ((2.06, "2 s"), (2.9, "2 s"), (3.1, "3 s")):
         again, computed = changed(tmp_path / "a.mcap", tmp_path / "b.mcap", Change(begin))
         assert computed == f"computed from the checkpoint at {note}"
+        require_equal(tmp_path / "a.mcap", again)
+
+
+def test_a_snapshot_with_an_end_has_the_checkpoints_up_to_it(tmp_path: Path) -> None:
+    graph = Graph(keep=3.0).run(3.25).snapshot(tmp_path / "a.mcap", 0.9, 2.55).run(0.5)
+    graph.close()
+    assert checkpoints_of(tmp_path / "a.mcap") == [1500, 2000, 2500]
+    for begin, note in ((1.7, "1.5 s"), (2.52, "2.5 s")):
+        again, computed = changed(tmp_path / "a.mcap", tmp_path / "b.mcap", Change(begin))
+        assert computed == f"computed from the checkpoint at {note}"
+        assert max(rows["cycle"].max() for rows in again.states.values()) == 2549
         require_equal(tmp_path / "a.mcap", again)
 
 
