@@ -119,7 +119,7 @@ class GraphLink(Link):
         self._note(partial(self.seen.take_block, unit, block))
 
     def _take_event(self, data: bytes) -> None:
-        event = convert.message_to_event(convert.message_of(data, msg.Event))
+        event = convert.event_of(data)
         self._note(partial(self.seen.take_event, event))
         for jogging in self._jogs.values():
             jogging.take_event(event)

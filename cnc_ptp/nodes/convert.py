@@ -10,7 +10,7 @@ from rclpy.serialization import deserialize_message
 
 from cnc_ptp import msg
 from cnc_ptp.errors import Value
-from cnc_ptp.protocol.blocks import ChannelOffsets, CommandRecord, Event, EventValue, HandshakeRequest
+from cnc_ptp.protocol.blocks import ChannelOffsets, CommandRecord, Event, EventValue, HandshakeRequest, Severity
 from cnc_ptp.protocol.event_values import ROLES, read_event_values
 from cnc_ptp.wire.unreadable import unreadable
 
@@ -61,7 +61,11 @@ def _values_of(values_json: str) -> dict[str, Value]:
     return values if isinstance(values, dict) else {}
 
 
-def message_to_event(message: msg.Event) -> Event:
+def event_of(data: bytes) -> Event:
+    """Raises CncError 26184 for bytes that are no event, or one of a severity that there is not."""
+    message = message_of(data, msg.Event)
+    if message.severity > max(Severity):
+        raise unreadable("Event", data, f"severity {message.severity} is not within 0 ... {max(Severity):d}")
     values = read_event_values(message)
     return Event(message.cycle, message.source, message.severity, message.error_id, message.text, message.line, values)
 

@@ -157,8 +157,7 @@ class DriveWatch:
 
     def _take(self, unit: str, block: AxisBlock | SpindleBlock) -> None:
         self.heard(unit)
-        if block.count:
-            self._newest[unit] = block
+        self._newest[unit] = block
 
     def _stop(self, unit: str, stamps: Stamps) -> None:
         last = self._last_values(unit)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
@@ -13,9 +14,12 @@ from cnc_ptp.channel.program_report import ProgramReport
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import process
 from cnc_ptp.nodes.client.latest_blocks import LatestBlocks
+from cnc_ptp.nodes.convert import message_of
 from cnc_ptp.nodes.handover import Handover
 from cnc_ptp.nodes.polling_node import PollingNode, chain
 from cnc_ptp.nodes.topics import (
+    BLOCK_CLASSES,
+    BLOCK_TYPES,
     BLOCKS,
     COMMAND,
     DIAGNOSTICS,
@@ -29,12 +33,13 @@ from cnc_ptp.nodes.topics import (
 )
 from cnc_ptp.nodes.unit.lateness import Lateness
 from cnc_ptp.parameters import MachineParameters
-from cnc_ptp.protocol.blocks import ChannelBlock, PlcBlock, Severity
+from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, PlcBlock, Severity, SpindleBlock
 from cnc_ptp.protocol.notes import Note, Notes, error_text
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.protocol.unit_view import UnitView
 from cnc_ptp.recording.on_demand import begun_file
 from cnc_ptp.wire.block_codec import codec_of
+from cnc_ptp.wire.unreadable import unreadable
 
 SUPERVISOR = "supervisor"
 """Source of events about node processes, which the supervisor prints itself."""
@@ -65,7 +70,8 @@ class RunMonitor(PollingNode):
         self._plc_block = 0
         self._plc_knows_failure = False
         self._last_fault = -1
-        self.diagnostics: dict[str, dict[str, str]] = {}
+        self.diagnostics: dict[str, dict[str, float]] = {}
+        """The newest figures of each node (recording/node_figures.py)."""
         self._histograms: dict[str, msg.LatenessHistogram] = {}
         self.standing: dict[str, bool] = {}
         self._needed: list[Subscription[Any]] = []
@@ -77,8 +83,10 @@ class RunMonitor(PollingNode):
         self._need(PlcBlock, msg.PlcBlock, PLC, self._on_plc)
         self.create_subscription(msg.Event, EVENT, self._on_event, EVENTS)
         self.create_subscription(msg.CommandRecord, COMMAND, self._on_command, EVENTS)
-        self.create_subscription(DiagnosticArray, DIAGNOSTICS, self._on_diagnostics, PLC_INPUT)
-        self.create_subscription(msg.LatenessHistogram, LATENESS, self._on_lateness, PLC_INPUT)
+        received = self.readable(DIAGNOSTICS, self._on_diagnostics)
+        self.create_subscription(DiagnosticArray, DIAGNOSTICS, received, PLC_INPUT, raw=True)
+        received = self.readable(LATENESS, self._on_lateness)
+        self.create_subscription(msg.LatenessHistogram, LATENESS, received, PLC_INPUT, raw=True)
 
     @property
     def run_failed(self) -> bool:
@@ -103,8 +111,9 @@ class RunMonitor(PollingNode):
         """Follows from now on whether `units`, axes and spindles, are at a standstill (`standing`)."""
         for unit in units:
             self.standing[unit] = False
-            block_type = msg.AxisBlock if unit in self._machine.axes else msg.SpindleBlock
-            self.create_subscription(block_type, block_topic(unit), self._standstill_callback(unit), BLOCKS)
+            kind = "axis" if unit in self._machine.axes else "spindle"
+            take = chain(codec_of(BLOCK_CLASSES[kind]).decode, partial(self._note_standstill, unit))
+            self.poll(BLOCK_TYPES[kind], block_topic(unit), take, BLOCKS)
 
     def watch_units(self) -> None:
         """Keeps the newest view of all units from now on."""
@@ -128,13 +137,9 @@ class RunMonitor(PollingNode):
         self.ending = f"the machine was ended ({signal_name}) with all units at a standstill"
         return True
 
-    def _standstill_callback(self, unit: str) -> Any:
-        set_field = "set_velocity" if unit in self._machine.axes else "set_speed_rpm"
-
-        def received(message: Any) -> None:
-            self.standing[unit] = getattr(message, set_field)[-1] == 0.0
-
-        return received
+    def _note_standstill(self, unit: str, block: AxisBlock | SpindleBlock) -> None:
+        velocities = block.set_velocity if isinstance(block, AxisBlock) else block.set_speed_rpm
+        self.standing[unit] = velocities[-1] == 0.0
 
     def lateness(self) -> Lateness:
         """Over the blocks of all nodes."""
@@ -159,10 +164,19 @@ class RunMonitor(PollingNode):
         self.refused += not message.accepted
         self.notes.add(Note.of_command(message))
 
-    def _on_lateness(self, message: msg.LatenessHistogram) -> None:
+    def _on_lateness(self, data: bytes) -> None:
+        """Raises CncError 26184 for one whose steps and numbers of blocks are no pairs."""
+        message = message_of(data, msg.LatenessHistogram)
+        steps, blocks = len(message.step), len(message.blocks)
+        if steps != blocks:
+            raise unreadable("LatenessHistogram", data, f"step holds {steps} values, and blocks {blocks}")
         self._histograms[message.source] = message
 
-    def _on_diagnostics(self, message: DiagnosticArray) -> None:
-        for status in message.status:
+    def _on_diagnostics(self, data: bytes) -> None:
+        """Raises CncError 26184 for figures that are no numbers."""
+        for status in message_of(data, DiagnosticArray).status:
             if status.hardware_id == "cnc_ptp":
-                self.diagnostics[status.name] = {value.key: value.value for value in status.values}
+                try:
+                    self.diagnostics[status.name] = {value.key: float(value.value) for value in status.values}
+                except ValueError as error:
+                    raise unreadable("DiagnosticArray", data, f"{status.name}: {error}") from error

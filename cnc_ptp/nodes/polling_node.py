@@ -60,11 +60,12 @@ class PollingNode(Node):
             except CncError as error:
                 if error.number != UNREADABLE_MESSAGE:
                     raise
-                self._leave_out(topic, error)
+                self.leave_out(topic, error)
 
         return take
 
-    def _leave_out(self, topic: str, error: CncError) -> None:
+    def leave_out(self, topic: str, error: CncError) -> None:
+        """Says that a topic has a message that cannot be read, once."""
         if topic not in self._unreadable:
             self._unreadable.add(topic)
             self.tell_unreadable(f"{self.get_name()}: topic {topic}: {error.message}")

@@ -141,7 +141,7 @@ class RecorderNode(PollingNode):
             handover.on_tick(self._guarded(self._on_tick), self._guarded(self._look))
             for unit in self._units:
                 handover.on_block(unit, self._guarded(partial(self._take_block, unit)))
-        self.create_subscription(msg.Event, EVENT, self._guarded(self._on_event), EVENTS)
+        self.create_subscription(msg.Event, EVENT, self._readable(EVENT, self._on_event), EVENTS, raw=True)
         self.create_subscription(msg.CommandRecord, COMMAND, self._guarded(self._on_command), EVENTS)
         for topic, message_type in ((DIAGNOSTICS, DiagnosticArray), (LATENESS, msg.LatenessHistogram)):
             received = self._readable(topic, partial(self._on_stamped, topic, message_type))
@@ -271,6 +271,7 @@ class RecorderNode(PollingNode):
             self._early.append(lambda: later(data))
             return
         data = with_plain_header(block_class, data, self._recording.stamps)
+        codec_of(block_class).check(data)  # first: what units leave out must not take the place of a block
         if unit == PLC:
             self._last_plc = data
         stamp_ns, first_cycle, count = head_of(data)
@@ -297,8 +298,8 @@ class RecorderNode(PollingNode):
         self._next_cycle[unit] = max(expected, cycle + count)
         return bool(expected <= cycle < self._stopped.get(unit, cycle + 1))
 
-    def _on_event(self, message: msg.Event) -> None:
-        event = convert.message_to_event(message)
+    def _on_event(self, data: bytes) -> None:
+        event = convert.event_of(data)
         self._single(lambda sink: sink.event(event))
 
     def _on_drive_stop(self, data: bytes) -> None:

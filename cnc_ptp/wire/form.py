@@ -26,14 +26,14 @@ class Form:
         self._size = 0
         self._values = 0
         self._steps: list[tuple[str, int, int, list[Any]]] = []
+        self._has_columns = any(field.length is not None and field.type in PRIMITIVES for field in schema.fields)
         lengths: dict[int, int] = {}
+        """Index of a value -> what it is in every message of this form."""
         for field in schema.fields:
             self._add(field, None if field.type == HEADER_TYPE else getattr(prototype, field.name), lengths)
         self._struct = struct.Struct("".join(self._codes))
         self._lengths = itemgetter(*lengths, 0)
         self._expected = (*lengths.values(), ENCAPSULATION)
-        has_columns = any(kind == COLUMN and constants[0] for _, kind, _, constants in self._steps)
-        self._count: int | None = getattr(prototype, "count", None) if has_columns else None
 
     @property
     def size(self) -> int:
@@ -51,6 +51,8 @@ class Form:
         if field.length is None and field.type in PRIMITIVES:
             self._number(PRIMITIVES[field.type], 1)
             self._steps.append((field.name, SCALAR, begin, []))
+            if field.name == "count" and self._has_columns:
+                lengths[begin] = value
         elif field.length is None:
             self._steps.append((field.name, TEXTS, begin, self._texts([value], lengths)))
         else:
@@ -99,15 +101,21 @@ class Form:
 
     def fits(self, data: bytes) -> bool:
         """True when a message is one of this form; DDS may have filled it up to a multiple of four bytes."""
-        return len(data) >= self.size and self._lengths(self._struct.unpack_from(data)) == self._expected
+        return self._values_of(data) is not None
+
+    def _values_of(self, data: bytes) -> tuple[Any, ...] | None:
+        """All values of a message in their order; None when it is not of this form."""
+        if len(data) < self.size:
+            return None
+        values = self._struct.unpack_from(data)
+        return values if self._lengths(values) == self._expected else None
 
     def unpack(self, data: bytes) -> dict[str, Any] | None:
         """The fields of a message except its header; None when it is not of this form."""
-        if len(data) < self.size:
+        found = self._values_of(data)
+        if found is None:
             return None
-        values = list(self._struct.unpack_from(data))
-        if self._lengths(values) != self._expected:
-            return None
+        values = [*found]
         fields: dict[str, Any] = {}
         for name, kind, begin, constants in self._steps:
             if kind == COLUMN:
@@ -118,7 +126,7 @@ class Form:
                 fields[name] = []
             else:
                 fields[name] = self._texts_at(values, begin, constants)
-        return fields if self._count is None or fields["count"] == self._count else None
+        return fields
 
     def _texts_at(self, values: list[Any], begin: int, constants: list[Any]) -> Any:
         """A text, or a list of them if their number comes first."""

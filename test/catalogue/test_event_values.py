@@ -8,9 +8,10 @@ from types import SimpleNamespace
 import pytest
 from builtin_interfaces.msg import Time
 from machine_support import axis_bench, spindle_bench
+from rclpy.serialization import serialize_message
 
 from cnc_ptp.machine.wiring import build_units
-from cnc_ptp.nodes.convert import event_to_message, message_to_event, message_to_record, record_to_message
+from cnc_ptp.nodes.convert import event_of, event_to_message, message_to_record, record_to_message
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import NO_VALUE, CommandRecord, Event, EventValue, Severity
 from cnc_ptp.protocol.event_values import event_values, read_event_values
@@ -83,7 +84,7 @@ def test_messages_have_them_as_fields() -> None:
     message = event_to_message(EVENT, Time())
     assert (message.faulty.name, message.faulty.value, message.faulty.unit) == ("jerk", 5.0, "mm/s³")
     assert (message.corrected.value, message.limit.name) == (2.0, "")
-    assert message_to_event(message) == EVENT
+    assert event_of(serialize_message(message)) == EVENT
 
 
 def test_recordings_have_them_too(tmp_path: Path) -> None:

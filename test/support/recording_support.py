@@ -31,6 +31,8 @@ from cnc_ptp.recording.writer import AS_USUAL, Recording
 
 MACHINE = "/machine:\n  ros__parameters: {axes: [x, y, z], note: 'Fräse'}\n"
 EXTREMES = [0.0, -0.0, math.nan, math.inf, -math.inf, 5e-324, 1.7976931348623157e308]
+STATE_BITS = 3
+"""Of the states of units: 0 ... 7."""
 
 
 class Blocks:
@@ -50,14 +52,14 @@ class Blocks:
 
     def axis(self, first: int, count: int = 10) -> AxisBlock:
         columns = [self.floats(count) for _ in range(15)]
-        return AxisBlock(first, count, *columns, *(self.integers(count, bits) for bits in (8, 32, 32)))
+        return AxisBlock(first, count, *columns, *(self.integers(count, bits) for bits in (STATE_BITS, 32, 32)))
 
     def spindle(self, first: int, count: int = 10) -> SpindleBlock:
         columns = [self.floats(count) for _ in range(11)]
         output = [value - 2**31 for value in self.integers(count, 32)]
         modes = [self.integers(count, 8) for _ in range(2)]
         flags = [self.booleans(count) for _ in range(5)]
-        last = [self.integers(count, bits) for bits in (32, 8, 32)]
+        last = [self.integers(count, bits) for bits in (32, STATE_BITS, 32)]
         return SpindleBlock(first, count, *columns, output, *modes, *flags, *last)
 
     def channel(self, first: int, count: int = 10, axes: tuple[str, ...] = ("x", "y", "z")) -> ChannelBlock:
@@ -76,7 +78,7 @@ class Blocks:
             programmed_feed=self.floats(count),
             override_percent=self.floats(count),
             distance_to_go=self.floats(count),
-            state=self.integers(count, 8),
+            state=self.integers(count, STATE_BITS),
             error_id=self.integers(count, 32),
             done=False,
             programmed_position=[1.5, -0.0, 7.25][: len(axes)],

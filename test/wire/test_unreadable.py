@@ -1,16 +1,25 @@
 """Bytes that are no message of their topic: refused with 26184, and nodes leave them out (found by bench.fuzz)."""
 
 import struct
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from rclpy.serialization import serialize_message
 from recording_support import Blocks
 
 from cnc_ptp.errors import CncError
+from cnc_ptp.msg import Event, LatenessHistogram
 from cnc_ptp.nodes.bridge.coupling_services import pairs_of
+from cnc_ptp.nodes.client.latest_blocks import LatestBlocks
+from cnc_ptp.nodes.convert import event_of
+from cnc_ptp.nodes.monitor import RunMonitor
 from cnc_ptp.nodes.polling_node import PollingNode, chain
+from cnc_ptp.nodes.recorder import RecorderNode
 from cnc_ptp.nodes.unit.unit_node import UnitNode
-from cnc_ptp.protocol.blocks import AxisBlock, PlcBlock, Severity
+from cnc_ptp.protocol.axis_states import AxisStateCode
+from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, JobEvent, PlcBlock, Severity, SpindleBlock
 from cnc_ptp.srv import CoupleCam
 from cnc_ptp.wire.block_codec import BlockCodec, codec_of, encode_block, has_plain_header, head_of
 from cnc_ptp.wire.fixed_message import FixedMessage
@@ -48,6 +57,119 @@ def test_a_block_with_another_number_of_values_than_cycles(known):
     assert codec.decode(data).count == 10
 
 
+UNITS = {"axis": AxisBlock, "spindle": SpindleBlock, "channel": ChannelBlock}
+
+
+@pytest.mark.parametrize("known", [False, True], ids=["first", "known form"])
+@pytest.mark.parametrize("unit", UNITS)
+def test_a_block_with_a_state_that_no_unit_has(unit, known):
+    codec = BlockCodec(UNITS[unit])
+    blocks = Blocks(2)
+    block = getattr(blocks, unit)(0)
+    if known:
+        codec.decode(encode_block(block, STAMPS))
+    block.state[4] = 99
+    data = encode_block(block, STAMPS)
+    reason = f"state 99 is not within 0 ... 7{IGNORED}"
+    text = f"P-ERR-26184 {len(data)} bytes are no message {UNITS[unit].__name__}: {reason}"
+    assert refusal(codec.decode, data) == refusal(codec.check, data) == text
+    block.state[4] = 7
+    codec.check(encode_block(block, STAMPS))
+
+
+def test_a_job_with_a_status_that_there_is_not():
+    block = Blocks(3).axis(0)
+    block.job_events = [JobEvent(1, 5, 0, 0)]
+    data = encode_block(block, STAMPS)
+    text = f"{len(data)} bytes are no message AxisBlock: status of a job 5 is not within 1 ... 4{IGNORED}"
+    assert (
+        refusal(codec_of(AxisBlock).decode, data) == refusal(codec_of(AxisBlock).check, data) == f"P-ERR-26184 {text}"
+    )
+
+
+def test_a_block_without_cycles():
+    codec = BlockCodec(AxisBlock)
+    data = encode_block(AxisBlock(10, 0), STAMPS)
+    text = f"P-ERR-26184 {len(data)} bytes are no message AxisBlock: count is 0{IGNORED}"
+    assert refusal(codec.decode, data) == refusal(codec.check, data) == text
+    without_columns = data[:28] + struct.pack("<I", 5) + data[32:]
+    reason = "set_position holds 0 values, and count is 5"
+    assert refusal(codec.decode, without_columns).endswith(f"AxisBlock: {reason}{IGNORED}")
+
+
+@pytest.mark.parametrize("known", [False, True], ids=["first", "known form"])
+def test_a_path_without_setpoints_of_all_its_axes(known):
+    codec = BlockCodec(ChannelBlock)
+    block = Blocks(4).channel(0, axes=("x", "y"))
+    block.axes, block.path_active = ["x", "y", "z"], not known
+    if known:
+        codec.decode(encode_block(block, STAMPS))
+        block.path_active = True
+    data = encode_block(block, STAMPS)
+    reason = f"set_position holds 20 values, and its axes have 30 setpoints{IGNORED}"
+    text = f"P-ERR-26184 {len(data)} bytes are no message ChannelBlock: {reason}"
+    assert refusal(codec.decode, data) == refusal(codec.check, data) == text
+
+
+def test_an_event_of_a_severity_that_there_is_not():
+    for severity in (0, 1, 2):
+        assert event_of(serialize_message(Event(severity=severity))).severity == severity
+    data = serialize_message(Event(severity=3))
+    text = f"P-ERR-26184 {len(data)} bytes are no message Event: severity 3 is not within 0 ... 2{IGNORED}"
+    assert refusal(event_of, data) == text
+
+
+def test_what_a_client_shows_of_a_unit_is_the_last_that_it_can_read():
+    told, subscribed = [], {}
+    node = SimpleNamespace(
+        create_subscription=lambda _of, topic, take, *_rest, **_more: subscribed.update({topic: take}),
+        leave_out=lambda topic, error: told.append((topic, str(error))),
+    )
+    blocks = LatestBlocks(node, {"x": "axis"}, rotary=())
+    block = Blocks(1).axis(0)
+    block.state[-1], stamps = AxisStateCode.HOMING, Stamps(1_500_000_000, 1_000_000)
+    wrong = encode_block(replace(block, state=[99] * 10), stamps)
+    subscribed["x/block"](wrong)
+    assert blocks.views() == []
+    subscribed["x/block"](encode_block(block, stamps))
+    [view] = blocks.views()
+    assert (view.state, view.cycle, view.stamp) == ("Homing", 10, 1.5)
+    subscribed["x/block"](wrong)
+    assert blocks.view("x") == view
+    reason = f"{len(wrong)} bytes are no message AxisBlock: state 99 is not within 0 ... 7{IGNORED}"
+    assert told == [("x/block", f"P-ERR-26184 {reason}")] * 2
+
+
+def test_what_cannot_be_read_takes_no_place_in_a_recording():
+    """Its head alone would be a reason to leave out the block of the unit that comes then."""
+    taken = []
+    recorder = SimpleNamespace(
+        _recording=SimpleNamespace(stamps=STAMPS), _last_plc=b"", _is_new=lambda *head: taken.append(head)
+    )
+    block = Blocks(1).axis(10)
+    good = encode_block(block, STAMPS)
+    for wrong in (good[:100], encode_block(replace(block, state=[8] * 10), STAMPS)):
+        assert "no message AxisBlock: " in refusal(RecorderNode._on_block, recorder, "x", AxisBlock, wrong)
+    plc = encode_block(PlcBlock(10, 10), STAMPS)
+    assert "no message PlcBlock: " in refusal(RecorderNode._on_block, recorder, "plc", PlcBlock, plc[:34])
+    assert (taken, recorder._last_plc) == ([], b"")
+    RecorderNode._on_block(recorder, "x", AxisBlock, good)
+    RecorderNode._on_block(recorder, "plc", PlcBlock, plc)
+    assert taken == [("x", STAMPS.at(10), 10, 10), ("plc", STAMPS.at(10), 10, 10)] and recorder._last_plc == plc
+
+
+def test_a_run_that_ends_takes_no_figures_that_are_none():
+    monitor = SimpleNamespace(diagnostics={}, _histograms={})
+    status = DiagnosticStatus(name="x", hardware_id="cnc_ptp", values=[KeyValue(key="blocks", value="many")])
+    data = serialize_message(DiagnosticArray(status=[status]))
+    text = f"x: could not convert string to float: 'many'{IGNORED}"
+    assert refusal(RunMonitor._on_diagnostics, monitor, data).endswith(f"no message DiagnosticArray: {text}")
+    data = serialize_message(LatenessHistogram(source="x", step=[1, 2], blocks=[3]))
+    text = f"no message LatenessHistogram: step holds 2 values, and blocks 1{IGNORED}"
+    assert refusal(RunMonitor._on_lateness, monitor, data).endswith(text)
+    assert monitor.diagnostics == monitor._histograms == {}
+
+
 def test_a_block_without_a_head():
     for read in (head_of, has_plain_header):
         assert (
@@ -82,7 +204,7 @@ def test_another_encapsulation_that_cannot_be_read():
 class Unready:
     """What `readable` needs of a node, without a graph."""
 
-    readable, _leave_out = PollingNode.readable, PollingNode._leave_out
+    readable, leave_out = PollingNode.readable, PollingNode.leave_out
 
     def __init__(self):
         self._unreadable, self.told = set(), []

@@ -107,13 +107,15 @@ def print_summary(
     for line in time_lines(monitor.programs, cycle_time):
         console.print(line, markup=False)
     blocks, lost, twice = (
-        sum(int(node[key]) for node in monitor.diagnostics.values()) for key in (BLOCKS, LOST_BLOCKS, CAME_TWICE)
+        sum(node.get(key, 0.0) for node in monitor.diagnostics.values()) for key in (BLOCKS, LOST_BLOCKS, CAME_TWICE)
     )
-    console.print(f"blocks {blocks} in {len(monitor.diagnostics)} nodes, lost {lost}, computed twice {twice}")
+    nodes = len(monitor.diagnostics)
+    console.print(f"blocks {blocks:.0f} in {nodes} nodes, lost {lost:.0f}, computed twice {twice:.0f}")
     for name, axis in machine.axes.items():
         unit = "deg" if axis.rotary else "mm"
-        if error := monitor.diagnostics.get(name, {}).get(following_error(unit)):
-            console.print(f"largest following error {name}: {float(error):.4f} {unit}")
+        error = monitor.diagnostics.get(name, {}).get(following_error(unit))
+        if error is not None:
+            console.print(f"largest following error {name}: {error:.4f} {unit}")
     lateness = monitor.lateness()
     if lateness.counts:
         p50, p99 = lateness.percentile_us(50.0) / 1000.0, lateness.percentile_us(99.0) / 1000.0

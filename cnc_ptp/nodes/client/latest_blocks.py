@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import time
 from collections.abc import Collection, Mapping
+from dataclasses import replace
 from typing import Any
 
-from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.nodes.convert import message_of
 from cnc_ptp.nodes.handover import Handover
-from cnc_ptp.nodes.topics import BLOCK_TYPES, block_topic
+from cnc_ptp.nodes.polling_node import PollingNode
+from cnc_ptp.nodes.topics import BLOCK_CLASSES, BLOCK_TYPES, block_topic
 from cnc_ptp.protocol.blocks import CycleBlock
 from cnc_ptp.protocol.unit_view import VIEWS, UnitView, view_of
+from cnc_ptp.wire.block_codec import codec_of, head_of
 
 GONE = 5.0
 """Seconds without a block of any unit after which a machine counts as gone."""
@@ -30,7 +31,7 @@ class LatestBlocks:
 
     def __init__(
         self,
-        node: Node,
+        node: PollingNode,
         kinds: Mapping[str, str],
         *,
         rotary: Collection[str],
@@ -41,9 +42,12 @@ class LatestBlocks:
 
         `handover`: from units of this process.
         """
+        self._node = node
         self._kinds = {unit: kind for shown in VIEWS for unit, kind in kinds.items() if kind == shown}
         self._rotary = rotary
         self._newest: dict[str, bytes | CycleBlock] = {}
+        self._views: dict[str, UnitView] = {}
+        """The last ones that were asked for."""
         self._heard = time.monotonic()
         for unit, kind in self._kinds.items():
             if handover is not None:
@@ -65,16 +69,22 @@ class LatestBlocks:
         return time.monotonic() - self._heard > GONE
 
     def view(self, unit: str) -> UnitView | None:
-        """None before the first block, and while the newest one cannot be read."""
+        """None before the first block that can be read; of one that cannot, the node says so."""
         newest = self._newest.get(unit)
-        if newest is None:
-            return None
-        kind = self._kinds[unit]
         try:
-            block = message_of(newest, BLOCK_TYPES[kind]) if isinstance(newest, bytes) else newest
-        except CncError:
-            return None
-        return view_of(unit, kind, block, rotary=unit in self._rotary)
+            if newest is not None:
+                self._views[unit] = self._view_of(unit, newest)
+        except CncError as error:
+            self._node.leave_out(block_topic(unit), error)
+        return self._views.get(unit)
+
+    def _view_of(self, unit: str, newest: bytes | CycleBlock) -> UnitView:
+        """Raises CncError 26184."""
+        kind, rotary = self._kinds[unit], unit in self._rotary
+        if not isinstance(newest, bytes):
+            return view_of(unit, kind, newest, rotary=rotary)
+        block = codec_of(BLOCK_CLASSES[kind]).decode(newest)
+        return replace(view_of(unit, kind, block, rotary=rotary), stamp=head_of(newest)[0] * 1e-9)
 
     def views(self) -> list[UnitView]:
         """The blocks of the units that have published: channels, axes, spindles."""
