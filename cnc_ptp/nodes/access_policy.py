@@ -160,7 +160,8 @@ def monitor_access(machine: MachineParameters) -> NodeAccess:
 def client_access(machine: MachineParameters, units: Iterable[NodeAccess]) -> NodeAccess:
     """Command line, pages and Python clients: all services and actions, jogs, and what shows the machine."""
     kinds = unit_kinds(machine)
-    reads = {EVENT, COMMAND, DIAGNOSTICS, *map(block_topic, kinds), *map(program_topic, machine.channels)}
+    reads = {EVENT, COMMAND, DIAGNOSTICS, *map(block_topic, kinds)}
+    reads |= {topic(channel) for channel in machine.channels for topic in (program_topic, offsets_topic)}
     nodes = [*units, recorder_access(machine)]
     return NodeAccess(
         CLIENT,

@@ -79,6 +79,7 @@ class View:
             self._tell_event(event, face.cycle_time)
         for request in news.requests:
             self.tell_request(request)
+        self._tell_earlier_offsets(news.offsets)
         for record in news.records:
             self._tell_answered(record, [*self._blocks, *news.blocks])
         for unit, block in news.blocks:
@@ -170,9 +171,18 @@ class View:
             table.begin_again()
         for channel, offsets in past.offsets:
             self._take_offsets(channel, offsets)
+        for record in past.records:
+            self.tables[record.target].take_record(record, ())
         events = [event_fields(event, cycle_time) for event in past.events[-EVENTS_KEPT:]]
         known = {"events": events, "alarms": self.alarms.list(), "offsets": self.offsets}
         self.to_all({"type": "past", **known, "nodes": [*past.diagnostics]})
+
+    def _tell_earlier_offsets(self, earlier: Sequence[tuple[str, ChannelOffsets]]) -> None:
+        """From before the first block: the newest of each channel."""
+        for channel, offsets in earlier:
+            self._take_offsets(channel, offsets)
+        for channel in {channel for channel, _ in earlier}:
+            self.to_all({"type": "offsets", **self.offsets[channel]})
 
     def _tell_offsets(self, channel: str, block: ChannelBlock) -> None:
         for offsets in block.offsets:
@@ -186,8 +196,10 @@ class View:
                 self.to_all({"type": "zero_offsets", "channel": channel, **shown})
 
     def _take_offsets(self, channel: str, offsets: ChannelOffsets) -> None:
+        """They may come late."""
         self.tables[channel].take_active(offsets)
-        self.offsets[channel] = {"channel": channel, **asdict(offsets)}
+        if self.offsets.get(channel, {}).get("cycle", 0) <= offsets.cycle:
+            self.offsets[channel] = {"channel": channel, **asdict(offsets)}
 
 
 def request_fields(request: HandshakeRequest) -> dict[str, Any]:

@@ -246,6 +246,8 @@ def test_a_page_has_the_offsets_of_its_time(tmp_path):
     with Machine.offline(MILL, record=file) as m:
         m.channel.set_zero_offset(2, "X", 12.5)
         m.run_for(0.2)
+        m.channel.set_zero_offset(3, "Y", 4.0)  # never active
+        m.channel.teach_zero_offset(4)
         m.channel.load("part.nc", text="G55\nG1 X10 F600\nG54\nX10\nM30\n")  # 2.25 s, then 1.25 s
         m.channel.start().wait()
 
@@ -260,7 +262,8 @@ def test_a_page_has_the_offsets_of_its_time(tmp_path):
                 assert (active["channel"], active["zero_index"]) == ("channel", index)
                 assert active["zero_offset"][0] == (12.5 if index == 2 else 0.0)
                 rows = {row["name"]: row["values"] for row in (await page.ask("offsets"))["offsets"]}
-                assert rows["G55"]["X"] == 12.5
+                assert rows["G55"]["X"] == 12.5 and rows["G56"]["Y"] == 4.0
+                assert rows["G57"] == {"X": None, "Y": None, "Z": None}
             await page.ask("seek", time=0.0)
             assert (await page.wait_for("past"))["offsets"].get("channel", {}).get("zero_index") != 2
             assert (await page.ask("offsets"))["offsets"] == before

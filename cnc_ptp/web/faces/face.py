@@ -29,6 +29,8 @@ class News:
     records: Sequence[CommandRecord] = ()
     diagnostics: Sequence[dict[str, Any]] = ()
     """Of nodes, newly told."""
+    offsets: Sequence[tuple[str, ChannelOffsets]] = ()
+    """Of channels, from before their first block here."""
 
 
 @dataclass(slots=True)
@@ -38,6 +40,8 @@ class Past:
     events: Sequence[Event]
     offsets: Sequence[tuple[str, ChannelOffsets]]
     """Of channels, in the order of their cycles."""
+    records: Sequence[CommandRecord]
+    """Of commands that have changed zero offsets."""
     diagnostics: Sequence[dict[str, Any]]
     """The last ones of each node."""
 

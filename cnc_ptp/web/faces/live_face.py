@@ -22,10 +22,11 @@ from cnc_ptp.client.link import Reply
 from cnc_ptp.nodes import convert
 from cnc_ptp.nodes.client.calls_in_flight import CallsInFlight
 from cnc_ptp.nodes.client.machine_client import MachineClient, services_of
-from cnc_ptp.nodes.topics import DIAGNOSTICS, EVENT, EVENTS, LATEST, PLC_INPUT, jog_topic, program_topic
-from cnc_ptp.protocol.blocks import Event, Severity, read_values
+from cnc_ptp.nodes.topics import DIAGNOSTICS, EVENT, EVENTS, LATEST, PLC_INPUT, jog_topic, offsets_topic, program_topic
+from cnc_ptp.protocol.blocks import ChannelOffsets, Event, Severity, read_values
 from cnc_ptp.web.faces.face import News
 from cnc_ptp.web.faces.machine_face import SOURCE, MachineFace, taken
+from cnc_ptp.wire.block_codec import channel_offsets
 
 NODE = "web"
 MOST_DIAGNOSTICS = 100
@@ -47,6 +48,8 @@ class WebLink(GraphLink):
     def __init__(self, *, domain: int | None, namespace: str) -> None:
         self.programs: dict[str, dict[str, Any]] = {}
         self.diagnostics: deque[dict[str, Any]] = deque(maxlen=MOST_DIAGNOSTICS)
+        self.offsets: deque[tuple[str, ChannelOffsets]] = deque()
+        """Of channels, also those from before this process."""
         self._calls = CallsInFlight()
         self._jog_publishers: dict[str, Publisher[msg.Jog]] = {}
         self._jog_number = 0
@@ -59,6 +62,8 @@ class WebLink(GraphLink):
         for unit, kind in self.kinds.items():
             if kind == "channel":
                 client.create_subscription(msg.ProgramState, program_topic(unit), self._take_program, LATEST)
+                take_offsets = partial(self._take_offsets, unit)
+                client.create_subscription(msg.ChannelOffsets, offsets_topic(unit), take_offsets, EVENTS)
             if kind == "axis":
                 self._jog_publishers[unit] = client.create_publisher(msg.Jog, jog_topic(unit), PLC_INPUT)
             for command in FREQUENT[kind]:
@@ -77,6 +82,9 @@ class WebLink(GraphLink):
             "calls": [*state.calls],
             "available": [*state.available],
         }
+
+    def _take_offsets(self, channel: str, message: msg.ChannelOffsets) -> None:
+        self.offsets.append((channel, channel_offsets(message)))
 
     def _after(self, client: MachineClient) -> None:
         self._calls.go_on()
@@ -127,6 +135,8 @@ class LiveFace(MachineFace):
     def __init__(self, machine: Machine, link: WebLink) -> None:
         super().__init__(machine)
         self._graph = link
+        self._first: dict[str, int] = {}
+        """Unit -> first cycle of its first block here."""
 
     def programs(self) -> Mapping[str, Mapping[str, Any]]:
         return self._graph.programs
@@ -140,6 +150,10 @@ class LiveFace(MachineFace):
     def news(self) -> News:
         news = super().news()
         news.diagnostics = taken(self._graph.diagnostics)
+        for unit, block in news.blocks:
+            self._first.setdefault(unit, block.first_cycle)
+        earlier = (each for each in taken(self._graph.offsets) if each[1].cycle < self._first.get(each[0], inf))
+        news.offsets = [*news.offsets, *earlier]
         return news
 
     async def _answer_to(self, unit: str, command: str, arguments: Mapping[str, Any], user: str) -> Reply:

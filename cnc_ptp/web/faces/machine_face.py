@@ -21,7 +21,7 @@ from cnc_ptp.parameters import ParameterSet
 from cnc_ptp.parameters.check.runtime_change import changed
 from cnc_ptp.parameters.view.authority import OF_PAGES, closed_units
 from cnc_ptp.protocol.authority import closed_to, require_axes_open
-from cnc_ptp.protocol.blocks import Command, CommandRecord, Event, Severity
+from cnc_ptp.protocol.blocks import ChannelBlock, Command, CommandRecord, Event, Severity
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.web.access.rights import is_stop
 from cnc_ptp.web.faces.description import describe_commands, describe_units
@@ -46,6 +46,12 @@ class MachineFace(Face):
         self._events = seen.events()
         self._records = seen.records()
         self._blocks = {unit: seen.blocks_of(unit) for unit in self.kinds}
+        self._earlier = [
+            (unit, offsets)
+            for unit, block in seen.blocks.items()
+            if isinstance(block, ChannelBlock)
+            for offsets in block.offsets
+        ]
         self._stops = dict.fromkeys(self.kinds, 0)
         """How often a unit was stopped."""
         self._turns = {unit: asyncio.Lock() for unit in self.kinds}
@@ -86,7 +92,8 @@ class MachineFace(Face):
         records = taken(self._records.items)
         for record in records:
             self._take_parameter(record)
-        return News(taken(self._events.items), requests, blocks, records)
+        earlier, self._earlier = self._earlier, []
+        return News(taken(self._events.items), requests, blocks, records, offsets=earlier)
 
     def _take_parameter(self, record: CommandRecord) -> None:
         """A parameter of an axis that was written, by whomever."""

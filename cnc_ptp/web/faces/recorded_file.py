@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import json
 from collections import OrderedDict
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
@@ -14,14 +13,16 @@ import numpy as np
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 
+from cnc_ptp.client.record_arguments import record_arguments
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes.topics import BLOCK_CLASSES
 from cnc_ptp.parameters import load_machine
-from cnc_ptp.protocol.blocks import ChannelOffsets, CycleBlock, Event
+from cnc_ptp.protocol.blocks import ChannelOffsets, CommandRecord, CycleBlock, Event
 from cnc_ptp.recording.opened import OpenRecording
 from cnc_ptp.recording.parts import files_of
 from cnc_ptp.web.faces.description import describe_units
-from cnc_ptp.web.faces.program_watch import Load, load_of
+from cnc_ptp.web.faces.offset_table import OFFSET_COMMANDS
+from cnc_ptp.web.faces.program_watch import load_of
 from cnc_ptp.web.faces.scope import HEAD, Samples, Signal
 from cnc_ptp.wire.block_codec import codec_of
 
@@ -67,7 +68,15 @@ class RecordedFile:
         self.end = self._end()
         self.events = self._read_events()
         self.offsets = self._read_offsets()
-        self.programs = self._read_programs()
+        records = self._read_records()
+        self.programs = [
+            (record.cycle, record.target, load_of(record_arguments(record)))
+            for record in records
+            if record.command == "load"
+        ]
+        """Cycle, channel, and each program that was loaded."""
+        self.offset_records = [record for record in records if record.command in OFFSET_COMMANDS]
+        """Of commands that have changed zero offsets."""
         self._reading = asyncio.Lock()
         self._decoders = [DecoderFactory() for _ in self._files]
         self._windows: OrderedDict[int, Window] = OrderedDict()
@@ -158,19 +167,19 @@ class RecordedFile:
             found += [(channel, ChannelOffsets(**dict(zip(names, row, strict=True)))) for row in rows]
         return sorted(found, key=lambda offsets: offsets[1].cycle)
 
-    def _read_programs(self) -> list[tuple[int, str, Load]]:
-        """Cycle, channel, and each program that was loaded."""
+    def _read_records(self) -> list[CommandRecord]:
+        """Of commands to channels that were carried out."""
         if "/commands" not in self._recording.topics:
             return []
-        names = ("cycle", "target", "command", "accepted", "arguments_json")
+        names = ("cycle", "target", "command", "arguments_json", "accepted")
         columns = self._recording.columns("/commands", *names)
         rows = zip(*(columns[name].tolist() for name in names), strict=True)
-        loaded = [
-            (cycle, unit, load_of(json.loads(given)))
-            for cycle, unit, command, ok, given in rows
-            if command == "load" and ok
+        records = [
+            CommandRecord(cycle, unit, command, given, ok, 0, "")
+            for cycle, unit, command, given, ok in rows
+            if ok and self.kinds.get(unit) == "channel"
         ]
-        return sorted(loaded, key=lambda load: load[0])
+        return sorted(records, key=lambda record: record.cycle)
 
     def close(self) -> None:
         self._recording.close()

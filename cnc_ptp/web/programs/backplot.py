@@ -6,7 +6,7 @@ import struct
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from math import acos, ceil, radians
+from math import acos, ceil, hypot, radians
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from cnc_ptp.channel.program_check import ProgramCheck
 from cnc_ptp.errors import CncError
+from cnc_ptp.kinematics.kinematics import Kinematics
 from cnc_ptp.machine.program_files import Search, folder_of
 from cnc_ptp.nc.awaited import reads_the_run
 from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, HomeAxes, LinearMove
@@ -33,6 +34,8 @@ LONGEST = 60.0
 """Seconds of interpretation: an endless program is drawn as far as it came."""
 LOOK_EVERY = 100
 """Blocks between two looks at the time, and at whether anybody still wants the drawing."""
+PART = 0.5
+"""mm of a line of #FACE or #CYL, on which the axes go along a curve; at most as many as chords of an arc."""
 CHORD = 0.005
 """mm by which a chord of an arc leaves it; of large arcs at most …"""
 MOST_CHORDS = 180
@@ -61,6 +64,8 @@ class Drawing:
     """Texts of the programs that it calls, by name; None: they are looked for."""
     offsets: Rows = field(default_factory=dict)
     """Zero offsets as they are now; others are those of the parameters."""
+    clamp_index: int = 0
+    """The clamp position of now."""
 
 
 def is_always_wanted() -> bool:
@@ -84,7 +89,7 @@ def draw(
         files = Search(check_folders(drawing), {}).called(drawing.text, folder_of(drawing.file))
     program = check.parse(drawing.text, drawing.file, files, drawing.dialect)
     pen = Pen(check.axis_names, check.start, most)
-    state = check.state({}, {}, {}, changes_of(check.nc, drawing.offsets))
+    state = check.state({}, {}, {}, changes_of(check.nc, drawing.offsets), drawing.clamp_index)
     blocks = interpret(program, check.start, check.nc, state=state.modal, values=state.values, runs=True)
     end = time.monotonic() + seconds
     is_whole = True
@@ -129,7 +134,7 @@ def check_folders(drawing: Drawing) -> tuple[str, ...]:
 
 
 class Pen:
-    """Draws motions one after the other."""
+    """Draws motions one after the other, as positions of the axes; with #FACE X is the distance from the centre."""
 
     def __init__(self, axes: Sequence[str], start: Sequence[float], most: int) -> None:
         """`axes`: names in programs; `start` in mm; `most` points."""
@@ -137,6 +142,7 @@ class Pen:
         self._places = [names.index(name) if name in names else -1 for name in "XYZ"]
         self._path_axes = tuple(place for place in self._places if place >= 0)
         self._here = tuple(start)
+        """Where the axes are."""
         self._most = most
         self._values: list[float] = []
         self._add(self._here, 0.0, 0)
@@ -148,24 +154,38 @@ class Pen:
     def draw(self, block: CanonicalBlock) -> None:
         motion = block.motion
         if isinstance(motion, LinearMove):
-            self._here = motion.target
-            self._add(motion.target, 0.0 if motion.rapid else motion.feed * 60.0, block.source.line)
+            self._line(motion, block.source.line)
         elif isinstance(motion, CircularMove):
             self._arc(motion, block.source.line)
         elif isinstance(motion, HomeAxes):
             self._break()
 
+    def _line(self, motion: LinearMove, line: int) -> None:
+        feed, kinematics = 0.0 if motion.rapid else motion.feed * 60.0, motion.kinematics
+        if kinematics is not None:
+            begin = kinematics.forward(self._here)
+            way = [end - start for start, end in zip(begin, motion.target, strict=True)]
+            count = min(MOST_CHORDS, ceil(hypot(*(way[place] for place in kinematics.plane)) / PART))
+            for number in range(1, count):
+                place = [start + number / count * part for start, part in zip(begin, way, strict=True)]
+                self._go(place, kinematics, feed, line)
+        self._go(motion.target, kinematics, feed, line)
+
     def _arc(self, motion: CircularMove, line: int) -> None:
-        plane, directions = motion.plane, motion.directions
-        arc = Arc(
-            self._here, motion.target, motion.center, plane, motion.radius, motion.sweep, self._path_axes, directions
-        )
+        plane, directions, kinematics = motion.plane, motion.directions, motion.kinematics
+        begin = self._here if kinematics is None else kinematics.forward(self._here)
+        arc = Arc(begin, motion.target, motion.center, plane, motion.radius, motion.sweep, self._path_axes, directions)
         count = chords(motion.radius, motion.sweep)
         for number in range(1, count):
             state = arc.evaluate(arc.length * number / count, 0.0, 0.0, 0.0)
-            self._add([axis[0] for axis in state], motion.feed * 60.0, line)
-        self._here = motion.target
-        self._add(motion.target, motion.feed * 60.0, line)
+            self._go([axis[0] for axis in state], kinematics, motion.feed * 60.0, line)
+        self._go(motion.target, kinematics, motion.feed * 60.0, line)
+
+    def _go(self, target: Sequence[float], kinematics: Kinematics | None, feed: float, line: int) -> None:
+        """Straight to a programmed place."""
+        programmed = tuple(target)
+        self._here = programmed if kinematics is None else kinematics.inverse(programmed, self._here)
+        self._add(self._here, feed, line)
 
     def _add(self, position: Sequence[float], feed: float, line: int) -> None:
         self._values += [position[place] if place >= 0 else 0.0 for place in self._places]

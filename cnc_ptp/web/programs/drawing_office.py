@@ -73,7 +73,8 @@ class DrawingOffice:
 
         `replaces`: the channel has this program and these offsets now; what is drawn of others ends.
         """
-        key = (drawing.channel, drawing.file, drawing.text, str(drawing.files), str(drawing.offsets))
+        offsets = str((drawing.offsets, drawing.clamp_index))
+        key = (drawing.channel, drawing.file, drawing.text, str(drawing.files), offsets)
         if key not in self._orders:
             if replaces:
                 self._cancel(drawing.channel)

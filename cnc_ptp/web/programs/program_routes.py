@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from dataclasses import replace
 
 from aiohttp import web
 
@@ -97,11 +98,10 @@ class ProgramRoutes:
             raise CncError(TOO_MANY_MESSAGES, "backplot: too many requests in a short time", "nothing was read; wait")
         load = await asyncio.to_thread(self._programs(request).loaded_text, channel)
         files = load.files if load.files or face.is_recording else None
-        view = self._view(request)
-        offsets = view.tables[channel].rows if view is not None else {}
-        drawing = Drawing(
-            channel, face.kinds, face.sets, face.cycle_time, load.text or "", load.path, files=files, offsets=offsets
-        )
+        drawing = Drawing(channel, face.kinds, face.sets, face.cycle_time, load.text or "", load.path, files=files)
+        if (view := self._view(request)) is not None:
+            table = view.tables[channel]
+            drawing = replace(drawing, offsets=table.rows, clamp_index=table.clamp_index)
         points = await self._hub.office.draw(drawing, replaces=not face.is_recording)
         headers = {"Cache-Control": "no-store"}
         response = web.Response(body=points, content_type="application/octet-stream", headers=headers)
