@@ -8,21 +8,9 @@ from typing import Any
 import click
 
 from cnc_ptp import KERNEL
-from cnc_ptp.commands.arguments import (
-    DIALECT,
-    DIALECT_OF_A_FILE,
-    MACHINE,
-    RECORDING,
-    parse_kinds,
-    words,
-)
-from cnc_ptp.commands.commissioning.options import (
-    circle_options,
-    curve_fit_options,
-    identify_options,
-    require_one_state,
-    require_source,
-)
+from cnc_ptp.commands.arguments import DIALECT, DIALECT_OF_A_FILE, MACHINE, RECORDING, words
+from cnc_ptp.commands.commissioning.groups import curve_commands, identify_commands
+from cnc_ptp.commands.commissioning.options import circle_options, require_one_state
 from cnc_ptp.commands.completion import (
     COMPLETE_FROM,
     complete_axis,
@@ -31,8 +19,10 @@ from cnc_ptp.commands.completion import (
     complete_unit,
     complete_word,
 )
-from cnc_ptp.commands.group import Group, WordsOrCommand
+from cnc_ptp.commands.group import Group
+from cnc_ptp.commands.lists_commands import lists_commands
 from cnc_ptp.commands.look.options import is_text, part_options, program_options, require_none, take_plot
+from cnc_ptp.commands.look.params_commands import params_commands
 from cnc_ptp.commands.run.options import (
     graph_options,
     replay_options,
@@ -192,9 +182,6 @@ def web_command(**options: Any) -> None:
     from cnc_ptp.commands.run.web import web
 
     sys.exit(web(**options))
-
-
-main.add_command(web_users)
 
 
 @main.command("enter", context_settings={"ignore_unknown_options": True, "allow_interspersed_args": False})
@@ -411,45 +398,6 @@ def plot_command(more_topics: tuple[str, ...], **options: Any) -> None:
     sys.exit(plot(**options, **of_recording))
 
 
-@main.group("params", cls=WordsOrCommand)
-def params_group() -> None:
-    """Show the parameter reference; compare and check machine files.
-
-    `cnc_ptp params WORD...` shows what matches the words (id, number, parts of names, text), without words all groups.
-    """
-
-
-@params_group.command("search")
-@click.argument("words", nargs=-1, metavar="[WORD]...")
-@click.option("--list", "list_name", help="Only this list: axis, channel, P-COMP ...")
-@click.option("--topic", help="Only parameters of a topic, or of topics that have this word.")
-@click.option("--changed", type=click.Path(dir_okay=False), help="Only what this machine file sets otherwise.")
-def params_command(words: tuple[str, ...], **options: Any) -> None:
-    """What matches the WORDs (id, number, parts of names, text), or all groups."""
-    from cnc_ptp.commands.look.params import params
-
-    sys.exit(params(" ".join(words), **options))
-
-
-@params_group.command("diff")
-@click.argument("first", type=click.Path(dir_okay=False))
-@click.argument("second", type=click.Path(dir_okay=False))
-def params_diff_command(first: str, second: str) -> None:
-    """In which parameters two machine files differ, defaults included. Status 1 if they do."""
-    from cnc_ptp.commands.look.machine_params import diff
-
-    sys.exit(diff(first, second))
-
-
-@params_group.command("check")
-@MACHINE
-def params_check_command(machine: str) -> None:
-    """Everything that is wrong or doubtful in a machine file, at once. Status 2 if it would not start."""
-    from cnc_ptp.commands.look.machine_params import check
-
-    sys.exit(check(machine))
-
-
 @main.command("init")
 @click.argument("kind", type=click.Choice(("lathe", "mill", "ptp")))
 @click.option("-o", "--output", type=click.Path(dir_okay=False), help="File to write; default: KIND.yaml.")
@@ -458,69 +406,6 @@ def init_command(kind: str, output: str | None) -> None:
     from cnc_ptp.commands.init.init import init
 
     sys.exit(init(kind, output))
-
-
-@main.group("lists")
-def lists_group() -> None:
-    """Read and write the vendor's ASCII lists of axes, channels, tools."""
-
-
-@lists_group.command("import")
-@click.argument("folder", type=click.Path())
-@click.option("-o", "--output", required=True, type=click.Path(), help="Machine file to write.")
-@click.option("--report", type=click.Path(), help="File to write what became of each line, and every default.")
-@click.option("--as", "kinds", multiple=True, callback=parse_kinds, metavar="FILE=KIND", help="What a list is.")
-@click.option("--strict", is_flag=True, help="An unknown line is an error.")
-@click.option("--incomplete", is_flag=True, help="Only report what values and lists say against each other.")
-@click.option("--force", is_flag=True, help="Overwrite the output.")
-def lists_import_command(**options: Any) -> None:
-    """Make a machine file of the lists in FOLDER.
-
-    Prints what was corrected and what is unknown; unknown lines and comments are kept for an export.
-    """
-    from cnc_ptp.commands.lists import import_folder
-
-    sys.exit(import_folder(**options))
-
-
-@lists_group.command("export")
-@MACHINE
-@click.option("-o", "--output", required=True, type=click.Path(), metavar="FOLDER", help="Folder to write.")
-@click.option("--force", is_flag=True, help="Replace the lists in a folder that is there.")
-def lists_export_command(**options: Any) -> None:
-    """Write a machine file as lists, one file for each axis, channel and table."""
-    from cnc_ptp.commands.lists import export_folder
-
-    sys.exit(export_folder(**options))
-
-
-@main.group("identify")
-def identify_group() -> None:
-    """Identify the friction or the drive of an axis.
-
-    Gives friction table, drive time constant and position controller gain.
-    """
-
-
-@identify_group.command("friction")
-@identify_options
-@click.option("--velocity", "velocities", type=float, multiple=True, help="Drive these velocities (mm/s, deg/s) only.")
-def identify_friction_command(**options: Any) -> None:
-    """Identify the friction of AXIS: drive in both directions at constant velocities, read the torque, write YAML."""
-    from cnc_ptp.commands.commissioning.identify import identify_friction
-
-    require_source(options)
-    sys.exit(identify_friction(**options))
-
-
-@identify_group.command("dynamics")
-@identify_options
-def identify_dynamics_command(**options: Any) -> None:
-    """Identify the drive of AXIS: time constant, dead time, inertia; propose Kv and feedforward as YAML."""
-    from cnc_ptp.commands.commissioning.identify import identify_dynamics
-
-    require_source(options)
-    sys.exit(identify_dynamics(**options))
 
 
 @main.command("circle")
@@ -537,21 +422,5 @@ def circle_command(**options: Any) -> None:
     sys.exit(circle(**options))
 
 
-@main.group("curve")
-def curve_group() -> None:
-    """Acceleration curves of spindles (P-AXIS-00202)."""
-
-
-@curve_group.command("fit")
-@curve_fit_options
-def curve_fit_command(**options: Any) -> None:
-    """Coefficients b1, b2, b3 of an acceleration curve from interpolation points of the drive.
-
-    The point at the limit speed gives n_grenz and a_konst. Above it 3 points make the polynomial and 2 the hyperbola,
-    exactly; with more of them the curve is the least squares fit, and the table shows how far it is off each point.
-    """
-    from cnc_ptp.commands.commissioning.curve import curve_fit
-
-    if bool(options["points"]) == bool(options["csv"]):
-        raise click.UsageError("Either --point (again and again) or --csv is needed.")
-    sys.exit(curve_fit(**options))
+for group in (params_commands, lists_commands, identify_commands, curve_commands, web_users):
+    main.add_command(group)
