@@ -94,16 +94,10 @@ class Hub:
                 await asyncio.sleep(AGAIN)
 
     async def _live_with(self, face: Face) -> None:
-        self.face, self._views = face, []
-        self.programs = ProgramWatch(self.folder, is_recording=face.is_recording)
-        self.programs.take_state({}, face.last_loads())
-        self.shared = None if face.is_recording else self._view(face, self.programs)
-        for session in self.sessions:
-            self._show(session, face)
-            session.send({"type": "back"})
-            session.send(self.hello(session))
+        """Until its machine is gone; raises what is a mistake of ours, when pages and face know it."""
         running = asyncio.create_task(face.run())
         try:
+            self._begin_with(face)
             while not running.done():
                 await asyncio.sleep(PERIOD)
                 self._tell()
@@ -112,11 +106,21 @@ class Hub:
             self._tell_gone(error)
             await asyncio.to_thread(face.close)
         except Exception as error:  # a mistake of ours must not leave pages that show the past
-            traceback.print_exc()
             self._tell_gone(server_failed(error))
             await asyncio.to_thread(face.close)
+            raise
         finally:
             running.cancel()
+
+    def _begin_with(self, face: Face) -> None:
+        self.face, self._views = face, []
+        self.programs = ProgramWatch(self.folder, is_recording=face.is_recording)
+        self.programs.take_state({}, face.last_loads())
+        self.shared = None if face.is_recording else self._view(face, self.programs)
+        for session in self.sessions:
+            self._show(session, face)
+            session.send({"type": "back"})
+            session.send(self.hello(session))
 
     def _tell_gone(self, error: CncError) -> None:
         self.face, self.why_none = None, error

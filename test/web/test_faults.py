@@ -3,7 +3,9 @@
 import asyncio
 import os
 import signal
+import time
 from concurrent.futures import Future
+from itertools import pairwise
 from types import SimpleNamespace
 
 import pytest
@@ -235,6 +237,29 @@ def test_a_machine_that_cannot_be_shown_is_tried_again(monkeypatch, capsys):
 
     run(story, connect=connect, waits=False)
     assert "a mistake" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("broken", ["last_loads", "state"])
+def test_a_machine_that_can_never_be_shown_is_tried_again_after_a_pause_and_left_each_time(monkeypatch, broken):
+    """Whether its first look fails or a later one."""
+    begun, ended = [], []
+
+    def connect():
+        face = offline_face(MILL, stands=True)
+        begun.append(time.monotonic())
+        close = face.close
+        monkeypatch.setattr(face, "close", lambda: (ended.append(1), close()))
+        monkeypatch.setattr(face, broken, lambda: 1 / 0)
+        return face
+
+    monkeypatch.setattr("cnc_ptp.web.hub.AGAIN", 0.5)
+
+    async def story(here):
+        while len(begun) < 3:
+            await asyncio.sleep(0.01)
+        assert all(after - before >= 0.5 for before, after in pairwise(begun)) and len(ended) >= 2
+
+    run(story, connect=connect, waits=False)
 
 
 def test_a_name_in_capitals_is_the_same_name():
