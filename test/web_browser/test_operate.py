@@ -316,6 +316,9 @@ def test_override_by_slider_and_keys(look, fake):
     eventually(page, lambda: page.evaluate("app.store.units.channel.override") == 102)
     page.click("[aria-label='Feed 100 %']")
     eventually(page, lambda: fake.state["channel"]["override"] == 100)
+    page.evaluate("app.store.unit('channel').limits = { override: 103 }")
+    page.keyboard.press("Control+ArrowUp")
+    eventually(page, lambda: commands(fake)[-1] == ("set_override", {"percent": 103}))
 
 
 def test_mdi_has_a_history_and_completes(look, fake):
@@ -448,10 +451,30 @@ def test_offsets_are_shown_set_and_taught(look, server, fake):
     cell.fill("-4")
     cell.press("Enter")
     eventually(page, lambda: commands(fake)[-1] == ("set_zero_offset", {"index": 1, "axis": "X", "value": -4}))
+    eventually(page, lambda: cell.input_value() == "-4")
     page.click("[aria-label='Teach G55 Y']")
     eventually(page, lambda: commands(fake)[-1] == ("teach_zero_offset", {"index": 2, "axis": "Y", "value": 0}))
     page.click("[aria-label='Teach G56, all axes']")
     eventually(page, lambda: commands(fake)[-1] == ("teach_zero_offset", {"index": 3, "value": 0}))
+
+
+def test_an_offset_that_is_refused_is_shown_as_it_is(look, server, fake):
+    page = look(command=True)
+    cell = page.locator("[aria-label='G54 X']")
+    eventually(page, lambda: cell.input_value() == "12.5")
+    fake.refusals["command"] = {"number": 22004, "text": "a program runs", "cause": "", "remedy": ""}
+    for entered in ("-4", ""):
+        cell.fill(entered)
+        cell.press("Enter")
+        eventually(page, lambda: cell.input_value() == "12.5")
+    page.wait_for_selector(".notice.error >> text=a program runs")
+    cell.fill("-5")
+    rows = [{"index": 1, "name": "G54", "values": {"X": 7.5, "Y": 0.0, "Z": -3.0}}]
+    server.do(fake.tell({"type": "zero_offsets", "channel": "channel", "axes": ["X", "Y", "Z"], "offsets": rows}))
+    page.wait_for_timeout(200)
+    assert cell.input_value() == "-5"  # what is being entered stays
+    cell.press("Enter")
+    eventually(page, lambda: cell.input_value() == "7.5")
 
 
 def test_the_picker_takes_the_endings_of_the_server(look):

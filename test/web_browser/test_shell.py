@@ -166,6 +166,25 @@ def test_the_page_comes_back_when_the_connection_breaks(look, server, fake):
     page.wait_for_selector(".positions")
 
 
+def test_an_answer_that_breaks_off_is_asked_for_again(look):
+    """Who the page is, when it connects again."""
+    page = look()
+    answers = []
+
+    def broken_once(route):
+        answers.append(route)
+        if len(answers) == 1:
+            route.fulfill(status=200, content_type="application/json", body='{"user": "web", ')
+        else:
+            route.continue_()
+
+    page.route("**/api/session", broken_once)
+    page.evaluate("app.connection._socket.close()")
+    until(page, "app.store.link !== 'open'")
+    until(page, "app.store.link === 'open' && app.store.machine !== null")
+    assert len(answers) == 2
+
+
 def test_the_end_of_the_machine_is_shown(look, server, fake):
     page = look()
     server.do(

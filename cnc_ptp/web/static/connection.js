@@ -24,24 +24,24 @@ export class Connection {
 
   async open() {
     this.store.setLink("connecting");
-    let response;
+    let [status, session] = [0, null];
     try {
-      response = await fetch("/api/session", { headers: { Accept: "application/json" } });
+      const response = await fetch("/api/session", { headers: { Accept: "application/json" } });
+      status = response.status;
+      if (response.ok) session = await response.json();
     } catch {
-      this._again();
-      return;
+      // no answer, or one that broke off
     }
-    if (response.status === 401) {
+    if (status === 401) {
       await this._needsLogin();
       return;
     }
-    if (!response.ok) {
+    if (!session) {
       this._again();
       return;
     }
-    const { token, login } = await response.json();
-    this.token = token;
-    this.store.hasLogin = login;
+    this.token = session.token;
+    this.store.hasLogin = session.login;
     this._connect();
   }
 

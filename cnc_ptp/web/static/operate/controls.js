@@ -82,8 +82,8 @@ export function keys(app) {
     if (event.repeat || document.querySelector("dialog[open]")) return;
     const step = event.ctrlKey && { ArrowUp: 5, ArrowDown: -5 }[event.key];
     if (step) {
-      const now = store.state(store.channel).override ?? 100;
-      app.command(store.channel, "set_override", { percent: Math.max(0, now + step) });
+      const [now, largest] = [store.state(store.channel).override ?? 100, store.unit(store.channel)?.limits?.override ?? 200];
+      app.command(store.channel, "set_override", { percent: Math.min(Math.max(0, now + step), largest) });
     } else if (acts[event.key]) acts[event.key]();
     else return;
     event.preventDefault();

@@ -29,25 +29,41 @@ export function offsets(app) {
 }
 
 function row(app, index, name, axes) {
-  const cells = axes.map((axis) => h("input", { type: "number", step: "any", "aria-label": `${name} ${axis}`, dataset: { axis } }));
   const { channel } = app.store;
-  for (const cell of cells) {
-    cell.addEventListener("change", async () => {
-      const value = Number(cell.value);
-      if (cell.value !== "" && (await app.command(channel, "set_zero_offset", { index, axis: cell.dataset.axis, value }))) app.notices.show("info", `${name} ${cell.dataset.axis} = ${fixed(value, 3)}`);
-    });
-  }
+  const cells = axes.map((axis) => cell(app, index, name, axis));
   const teach = (axis) => app.command(channel, "teach_zero_offset", { index, ...(axis ? { axis } : {}), value: 0 }).then((answer) => answer && app.notices.show("info", `${name}: the present position is taught; it counts when ${name} is selected next.`));
   const buttons = [button("all", () => teach(), { class: "small", "aria-label": `Teach ${name}, all axes` }), ...axes.map((axis) => button(axis, () => teach(axis), { class: "small", "aria-label": `Teach ${name} ${axis}` }))];
   return {
-    element: h("tr", {}, h("th", { scope: "row" }, name), cells.map((cell) => h("td", {}, cell)), h("td", {}, h("div", { class: "row" }, buttons))),
-    fill(values) {
-      for (const cell of cells) {
-        const value = values[cell.dataset.axis];
-        if (document.activeElement === cell || value === undefined) continue;
-        cell.value = value === null ? "" : Number(value.toFixed(6));
-        cell.placeholder = value === null ? "taught" : "";
-      }
+    element: h("tr", {}, h("th", { scope: "row" }, name), cells.map(({ element }) => h("td", {}, element)), h("td", {}, h("div", { class: "row" }, buttons))),
+    fill: (values) => axes.forEach((axis, i) => axis in values && cells[i].take(values[axis])),
+  };
+}
+
+/** Shows the value of the machine, but for what somebody is entering; what was refused is gone. */
+function cell(app, index, name, axis) {
+  const { channel } = app.store;
+  const input = h("input", { type: "number", step: "any", "aria-label": `${name} ${axis}`, dataset: { axis } });
+  let [known, asked] = [undefined, 0]; // of the machine, null: it was taught; commands without an answer
+  const show = () => {
+    input.value = typeof known === "number" ? Number(known.toFixed(6)) : "";
+    input.placeholder = known === null ? "taught" : "";
+  };
+  input.addEventListener("change", async () => {
+    const entered = input.value;
+    asked += 1;
+    const isSet = entered !== "" && (await app.command(channel, "set_zero_offset", { index, axis, value: Number(entered) }));
+    asked -= 1;
+    if (isSet) {
+      known = Number(entered);
+      app.notices.show("info", `${name} ${axis} = ${fixed(known, 3)}`);
+    } else if (input.value === entered) show();
+  });
+  input.addEventListener("blur", () => asked || show());
+  return {
+    element: input,
+    take(value) {
+      known = value;
+      if (document.activeElement !== input) show();
     },
   };
 }
