@@ -28,7 +28,7 @@ from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters, load_machine
 from cnc_ptp.plc.scenario import Entry
-from cnc_ptp.protocol.blocks import Command, CommandRecord
+from cnc_ptp.protocol.blocks import ChannelBlock, Command, CommandRecord
 from cnc_ptp.recording.mcap_file import METADATA, McapFile
 from cnc_ptp.recording.reader import COMMAND
 from cnc_ptp.recording.run_inputs import RunInputs
@@ -48,6 +48,7 @@ MOVE_SECONDS, OVERRIDE_SECONDS = 2, 10
 FAR, VELOCITY = 5.0, 20.0
 """Of its moves, mm and mm/s."""
 OVERRIDES = (100.0, 90.0)
+CHANNEL = "channel"
 CHANGED, OVERRIDE = "x.getriebe.0.kv=8000", 60.0
 """By the what-if replay."""
 
@@ -73,6 +74,7 @@ def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
     stored = median_of(effort.runs, lambda: processor_seconds(store, middle.machine))
     yield Figure("checkpoint of 8 axes", len(state) / 1e3, "kB")
     yield Figure("storing it, processor time", 1e3 * stored, "ms")
+    yield channel_alone(effort, store, middle)
     yield Figure("storing it, of the machine time at 10 s", 100.0 * stored / CHECKPOINT_SECONDS, "%")
     share = stored / (stored + middle.run_seconds / middle.cycle * 1e3 * CHECKPOINT_SECONDS)
     yield Figure("storing it, of a run offline without recording", 100.0 * share, "%")
@@ -91,6 +93,21 @@ def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
         yield Figure("its processor time", cpu, "s")
         watches = [timed(path, begin) for _ in range(effort.runs)]
         yield Figure("of it to the first block, without imports", statistics.median(each.wall for each in watches), "s")
+
+
+def channel_alone(effort: Effort, store: StateStore, middle: Middle) -> Figure:
+    """What holds up a channel in real time: its blocks are not stored, and their times only once."""
+    runners, blocks = middle.machine.parts
+    program = blocks[CHANNEL]
+    assert isinstance(program, ChannelBlock)
+
+    def seconds() -> float:
+        with stopwatch() as watch:
+            store.encode_units(middle.cycle, {CHANNEL: runners[CHANNEL]}, {CHANNEL: program})
+        return watch.cpu
+
+    name = f"storing its channel alone, a program of {program.blocks_total} blocks, processor time"
+    return Figure(name, 1e3 * median_of(effort.runs, seconds), "ms")
 
 
 def number_of_commands(path: Path) -> int:
