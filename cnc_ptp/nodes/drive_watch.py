@@ -91,7 +91,8 @@ class DriveWatch:
         self._events = EventPublisher(node)
         node.input_period = float("inf")  # this class says when
         for unit, kind in kinds.items():
-            take = chain(codec_of(BLOCK_CLASSES[kind]).decode, partial(self._take, unit))
+            decode = partial(codec_of(BLOCK_CLASSES[kind]).decode, count=machine.block_cycles)
+            take = chain(decode, partial(self._take, unit))
             node.poll_input(BLOCK_TYPES[kind], block_topic(unit), take, NEWEST_BLOCK)
 
     def heard(self, unit: str) -> None:

@@ -209,14 +209,20 @@ def spin(
             after()
             for each in timers:
                 each.call_if_late()
-            for node in nodes:
-                if failure := getattr(node, "failure", None):
-                    raise failure
+            raise_failure(nodes)
     finally:
         executor.shutdown()  # before the nodes: messages that arrive meanwhile would call what is destroyed
         for node in nodes:
             node.destroy_node()
         rclpy.try_shutdown()
+    raise_failure(nodes)  # of their ends
+
+
+def raise_failure(nodes: Sequence[Node]) -> None:
+    """Raises the CncError of the first node that has one."""
+    for node in nodes:
+        if failure := getattr(node, "failure", None):
+            raise failure
 
 
 def run_unit(make: Callable[[], Any], *, name: str) -> int:

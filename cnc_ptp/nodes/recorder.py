@@ -116,6 +116,7 @@ class RecorderNode(PollingNode):
         self._machine_yaml = machine_yaml
         self._path = path
         self._cycle_ns = machine.cycle_time_us * 1000
+        self._block_cycles = machine.block_cycles
         self._free_run = False
         self._tick_ns = 0
         self._last_tick = -1
@@ -195,7 +196,10 @@ class RecorderNode(PollingNode):
     def destroy_node(self) -> None:
         self._note_cut()
         for sink in self._sinks:
-            self._guarded(sink.close)()
+            try:
+                sink.close()
+            except CncError as error:  # its events would reach nobody
+                self.failure = self.failure or error
         super().destroy_node()
 
     def _note_cut(self) -> None:
@@ -271,7 +275,7 @@ class RecorderNode(PollingNode):
             self._early.append(lambda: later(data))
             return
         data = with_plain_header(block_class, data, self._recording.stamps)
-        codec_of(block_class).check(data)  # first: what units leave out must not take the place of a block
+        codec_of(block_class).check(data, self._block_cycles)  # what units leave out takes no place of a block
         if unit == PLC:
             self._last_plc = data
         stamp_ns, first_cycle, count = head_of(data)

@@ -128,7 +128,7 @@ class BlockCodec:
         self.schema = load_schema(f"cnc_ptp/msg/{block_class.__name__}")
         self._decode = decoder_of(self.schema)
         self._shape = _SHAPES[block_class]
-        self._highest_state = _HIGHEST_STATE.get(block_class)
+        self._highest_state = _HIGHEST_STATE.get(block_class, 0)
         self._forms: dict[Hashable, Form] = {}
         self._of_words: dict[int, list[Form]] = {}
         """By size in words of four bytes: DDS fills the last one up."""
@@ -158,21 +158,20 @@ class BlockCodec:
             self._require_columns(block)
             raise misfit(block, str(error)) from error
 
-    def decode(self, data: bytes) -> Any:
-        """The block of a message. Raises CncError 26184 for bytes that are none, and for what no unit sends."""
+    def decode(self, data: bytes, count: int | None = None) -> Any:
+        """The block of a message. `count`: cycles that it must have, None = any number.
+
+        Raises CncError 26184 for bytes that are none, and for what no unit sends.
+        """
         try:
-            return self._decoded(data)
+            block = self._by_form(data)
+            if block is None:
+                block = self._field_by_field(data)
+            self._require_known(block.count, max(getattr(block, "state", (0,))), count)
+            if isinstance(block, ChannelBlock):
+                require_setpoints(block)
         except Exception as error:  # whatever the generated decoder raises
             raise unreadable(self._class.__name__, data, error) from error
-
-    def _decoded(self, data: bytes) -> Any:
-        block = self._by_form(data)
-        if block is None:
-            block = self._field_by_field(data)
-        if self._highest_state is not None:
-            require_within("state", max(block.state), 0, self._highest_state)
-        if isinstance(block, ChannelBlock):
-            require_setpoints(block)
         return block
 
     def _by_form(self, data: bytes) -> Any:
@@ -193,17 +192,23 @@ class BlockCodec:
         self._learn(block)
         return block
 
-    def check(self, data: bytes) -> None:
+    def check(self, data: bytes, count: int) -> None:
         """Raises CncError 26184 as `decode`; of axes and spindles it costs a fraction of that."""
         form = self._form_of(data)
         if form is None or self._class is ChannelBlock:
-            self.decode(data)
-        elif self._highest_state is not None:
-            try:
-                highest = form.layout.read(data[: form.size])["state"].max()
-                require_within("state", int(highest), 0, self._highest_state)
-            except ValueError as error:
-                raise unreadable(self._class.__name__, data, error) from error
+            self.decode(data, count)
+            return
+        fields = form.layout.read(data[: form.size])
+        highest = int(fields["state"].max()) if self._highest_state else 0
+        try:
+            self._require_known(int(fields["count"][0]), highest, count)
+        except ValueError as error:
+            raise unreadable(self._class.__name__, data, error) from error
+
+    def _require_known(self, count: int, highest_state: int, expected: int | None) -> None:
+        if expected is not None and count != expected:
+            raise ValueError(f"count is {count}, and each tick has {expected} cycles")
+        require_within("state", highest_state, 0, self._highest_state)
 
     def layout(self, data: bytes) -> Layout:
         """Where the numbers of a message lie; the same object for messages of the same form.

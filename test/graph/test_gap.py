@@ -57,7 +57,7 @@ class Bench:
         self.executor = process.EventsExecutor()
         for node in (self.outside, self.axis):
             self.executor.add_node(node)
-        publishers = (self.outside.ticks, self.outside.plc, self.axis._block_publisher)
+        publishers = (self.outside.ticks, self.outside.plc, self.axis._publications.blocks)
         self.spin_until(lambda: all(publisher.get_subscription_count() for publisher in publishers))
 
     def spin_until(self, condition):

@@ -72,9 +72,9 @@ def test_a_block_with_a_state_that_no_unit_has(unit, known):
     data = encode_block(block, STAMPS)
     reason = f"state 99 is not within 0 ... 7{IGNORED}"
     text = f"P-ERR-26184 {len(data)} bytes are no message {UNITS[unit].__name__}: {reason}"
-    assert refusal(codec.decode, data) == refusal(codec.check, data) == text
+    assert refusal(codec.decode, data) == refusal(codec.check, data, 10) == text
     block.state[4] = 7
-    codec.check(encode_block(block, STAMPS))
+    codec.check(encode_block(block, STAMPS), 10)
 
 
 def test_a_job_with_a_status_that_there_is_not():
@@ -83,7 +83,9 @@ def test_a_job_with_a_status_that_there_is_not():
     data = encode_block(block, STAMPS)
     text = f"{len(data)} bytes are no message AxisBlock: status of a job 5 is not within 1 ... 4{IGNORED}"
     assert (
-        refusal(codec_of(AxisBlock).decode, data) == refusal(codec_of(AxisBlock).check, data) == f"P-ERR-26184 {text}"
+        refusal(codec_of(AxisBlock).decode, data)
+        == refusal(codec_of(AxisBlock).check, data, 10)
+        == f"P-ERR-26184 {text}"
     )
 
 
@@ -91,10 +93,20 @@ def test_a_block_without_cycles():
     codec = BlockCodec(AxisBlock)
     data = encode_block(AxisBlock(10, 0), STAMPS)
     text = f"P-ERR-26184 {len(data)} bytes are no message AxisBlock: count is 0{IGNORED}"
-    assert refusal(codec.decode, data) == refusal(codec.check, data) == text
+    assert refusal(codec.decode, data) == refusal(codec.check, data, 10) == text
     without_columns = data[:28] + struct.pack("<I", 5) + data[32:]
     reason = "set_position holds 0 values, and count is 5"
     assert refusal(codec.decode, without_columns).endswith(f"AxisBlock: {reason}{IGNORED}")
+
+
+@pytest.mark.parametrize("unit", UNITS)
+def test_a_block_of_a_machine_with_other_blocks(unit):
+    codec = BlockCodec(UNITS[unit])
+    data = encode_block(getattr(Blocks(5), unit)(0, 8), STAMPS)
+    reason = f"count is 8, and each tick has 10 cycles{IGNORED}"
+    text = f"P-ERR-26184 {len(data)} bytes are no message {UNITS[unit].__name__}: {reason}"
+    assert codec.decode(data).count == 8
+    assert refusal(codec.decode, data, 10) == refusal(codec.check, data, 10) == text
 
 
 @pytest.mark.parametrize("known", [False, True], ids=["first", "known form"])
@@ -108,7 +120,7 @@ def test_a_path_without_setpoints_of_all_its_axes(known):
     data = encode_block(block, STAMPS)
     reason = f"set_position holds 20 values, and its axes have 30 setpoints{IGNORED}"
     text = f"P-ERR-26184 {len(data)} bytes are no message ChannelBlock: {reason}"
-    assert refusal(codec.decode, data) == refusal(codec.check, data) == text
+    assert refusal(codec.decode, data) == refusal(codec.check, data, 10) == text
 
 
 def test_an_event_of_a_severity_that_there_is_not():
@@ -144,7 +156,10 @@ def test_what_cannot_be_read_takes_no_place_in_a_recording():
     """Its head alone would be a reason to leave out the block of the unit that comes then."""
     taken = []
     recorder = SimpleNamespace(
-        _recording=SimpleNamespace(stamps=STAMPS), _last_plc=b"", _is_new=lambda *head: taken.append(head)
+        _recording=SimpleNamespace(stamps=STAMPS),
+        _block_cycles=10,
+        _last_plc=b"",
+        _is_new=lambda *head: taken.append(head),
     )
     block = Blocks(1).axis(10)
     good = encode_block(block, STAMPS)

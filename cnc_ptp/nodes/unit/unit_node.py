@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import socket
-import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
 from builtin_interfaces.msg import Time
-from diagnostic_msgs.msg import DiagnosticArray
-from rcl_interfaces.msg import SetParametersResult
 from rclpy.subscription import Subscription
 
 from cnc_ptp import msg
@@ -20,44 +16,39 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.machine.gate import BlockGate
 from cnc_ptp.machine.runner import UnitRunner
 from cnc_ptp.machine.wiring import Inputs, unit_kinds, wiring
-from cnc_ptp.nodes import convert, process
-from cnc_ptp.nodes.events import EventPublisher
+from cnc_ptp.nodes import process
 from cnc_ptp.nodes.handover import Handover
 from cnc_ptp.nodes.polling_node import PollingNode, chain
 from cnc_ptp.nodes.topics import (
     BLOCK_CLASSES,
     BLOCK_TYPES,
     BLOCKS,
-    COMMAND,
-    DIAGNOSTICS,
     DRIVE_STOPS,
     EVENTS,
     HEARTBEAT,
-    LATENESS,
-    PLC_INPUT,
     RECORDER,
     REMEMBERED_BLOCKS,
-    REPORT,
     SERVICES,
-    STATE_TYPES,
     TICK,
     block_topic,
 )
-from cnc_ptp.nodes.unit.checkpoints import UnitCheckpoints
 from cnc_ptp.nodes.unit.claim import claim_unit
 from cnc_ptp.nodes.unit.diagnostics import UnitDiagnostics
-from cnc_ptp.nodes.unit.live_state import LiveState, period_cycles
-from cnc_ptp.nodes.unit.parameters import declare_parameters, refusal, refused_change, write_command, written_parameter
+from cnc_ptp.nodes.unit.heartbeat import Heartbeat
+from cnc_ptp.nodes.unit.live_state import period_cycles
+from cnc_ptp.nodes.unit.parameters import declare_parameters, refused_change
+from cnc_ptp.nodes.unit.publications import UnitPublications
 from cnc_ptp.nodes.unit.requests import NOT_BEGUN, RUN_OVER, given_arguments, objection
+from cnc_ptp.nodes.unit.shown_parameters import ShownParameters
 from cnc_ptp.nodes.watchdog import Watchdog
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.parameters.view.authority import OF_SERVICES
 from cnc_ptp.protocol.authority import closed_to
-from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Event, PlcBlock, Severity
+from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, PlcBlock, Severity
 from cnc_ptp.protocol.commands import BAD_ARGUMENT, COMMANDS
 from cnc_ptp.protocol.unit import CLOCK, PLC, Unit
 from cnc_ptp.state.machine_state import CHECKPOINT_SECONDS
-from cnc_ptp.wire.block_codec import codec_of, encode_block, has_plain_header, head_of
+from cnc_ptp.wire.block_codec import codec_of, has_plain_header, head_of
 from cnc_ptp.wire.stamps import Stamps
 from cnc_ptp.wire.ticks import Tick, decode_tick
 from cnc_ptp.wire.unreadable import UNREADABLE_MESSAGE
@@ -73,12 +64,7 @@ SOON = 0.0005
 """Seconds between two looks of a node that waits for the rest of a block."""
 LOOK_PERIOD = 0.005
 """Seconds between two looks of a node that has lost a source."""
-LONGEST_COMMAND = 2.0
-"""Seconds that a command or block may take; after that the node counts as silent."""
 DIAGNOSTICS_PERIOD = 1.0
-WITHOUT_STATES = (
-    "no state was stored, a replay begins at an older checkpoint, or cnc_ptp replay --checkpoints makes them"
-)
 
 
 class UnitNode(PollingNode):
@@ -128,8 +114,6 @@ class UnitNode(PollingNode):
         self.diagnostics = UnitDiagnostics(unit, block_ms=block_ms, length_unit="deg" if rotary else "mm")
         self._state_period = period_cycles(machine, state_rate)
         self._checkpoint_seconds = checkpoints
-        self._checkpoints: UnitCheckpoints | None = None
-        self._has_told_state = False
         self._scheduled_ns: dict[int, int] = {}
         self._told_twice: set[str] = set()
         self._masters: set[str] = set()
@@ -141,16 +125,12 @@ class UnitNode(PollingNode):
         """The clock runs in real time."""
         self._alone = False
         self._ended = False
-        self._busy = False
         self.failure: CncError | None = None
         """Why the node cannot continue."""
         self._watchdog = Watchdog((CLOCK, *self._gate.sources), seconds=machine.watchdog_ms / 1000.0)
-        self._heartbeat_at = time.monotonic()
         self._claim: socket.socket | None = None
         self._machine = machine
         self._own_name = MACHINE if unit.kind == PLC else unit.name
-        self._shows_written = False
-        """ROS takes over what the unit has already, or is about to have."""
 
     def setup(self) -> None:
         """Claims the unit, declares its parameters, makes topics, services and timers.
@@ -163,14 +143,14 @@ class UnitNode(PollingNode):
             super().destroy_node()
             raise
         declare_parameters(self, self._machine, self._own_name)
-        self.add_on_set_parameters_callback(self._write_parameters)
+        own, look = self._machine.raw(self._own_name), self._compute_ready_blocks
+        self._shown = ShownParameters(self, self.unit.name, own, give=self.command, look=look)
         self._make_publishers()
         self._make_subscriptions()
         self._make_services()
         self._ready_timer = process.timer(self, process.READY_PERIOD, self._report_ready)
         process.timer(self, self._watchdog.seconds / 4.0, self._watch)
         process.timer(self, DIAGNOSTICS_PERIOD, self._publish_diagnostics)
-        threading.Thread(target=self._heartbeat_while_busy, daemon=True).start()
 
     @property
     def unit(self) -> Unit:
@@ -179,20 +159,19 @@ class UnitNode(PollingNode):
     # set-up
 
     def _make_publishers(self) -> None:
-        name = self.unit.name
-        quality = REMEMBERED_BLOCKS if self.unit.kind in ("axis", "spindle") else BLOCKS
-        self._block_publisher = self.create_publisher(BLOCK_TYPES[self.unit.kind], block_topic(name), quality)
-        self._event_publisher = EventPublisher(self)
-        self._record_publisher = self.create_publisher(msg.CommandRecord, COMMAND, EVENTS)
-        self._report_publisher = self.create_publisher(msg.BlockReport, REPORT, BLOCKS)
-        self._heartbeat_publisher = self.create_publisher(msg.BlockReport, HEARTBEAT, BLOCKS)
-        self._diagnostics_publisher = self.create_publisher(DiagnosticArray, DIAGNOSTICS, PLC_INPUT)
-        self._lateness_publisher = self.create_publisher(msg.LatenessHistogram, LATENESS, PLC_INPUT)
-        self._live_state = None
-        if self._state_period and self.unit.kind in STATE_TYPES:
-            self._live_state = LiveState(self, name, self.unit.kind, self._state_period)
-        if self._checkpoint_seconds > 0.0:
-            self._checkpoints = UnitCheckpoints(self, self._machine, self._checkpoint_seconds)
+        self._publications = UnitPublications(
+            self,
+            self._machine,
+            self.unit,
+            self._stamps,
+            state_period=self._state_period,
+            checkpoint_seconds=self._checkpoint_seconds,
+            handover=self._handover,
+        )
+        seconds = self._watchdog.seconds
+        self._heartbeat = Heartbeat(
+            self, self.unit.name, watchdog_seconds=seconds, next_cycle=lambda: self._gate.next_cycle
+        )
 
     def _make_subscriptions(self) -> None:
         """The last source of a block wakes the node, which then looks for those of the others.
@@ -214,9 +193,13 @@ class UnitNode(PollingNode):
         take_tick = chain(decode_tick, self._take_tick)
         self._needed = [self._subscribe(msg.CycleTick, TICK, take_tick, wakes=CLOCK in waking)]
         for source in self._gate.sources:
-            kind = self._kinds[source]
-            take = chain(codec_of(BLOCK_CLASSES[kind]).decode, partial(self._take_block, source))
-            self._needed.append(self._subscribe(BLOCK_TYPES[kind], block_topic(source), take, wakes=source in waking))
+            take = chain(self._decoder(source), partial(self._take_block, source))
+            block_type = BLOCK_TYPES[self._kinds[source]]
+            self._needed.append(self._subscribe(block_type, block_topic(source), take, wakes=source in waking))
+
+    def _decoder(self, unit: str) -> Callable[[bytes], CycleBlock]:
+        """Of the blocks of a unit; raises CncError 26184 for what is none of this machine."""
+        return partial(codec_of(BLOCK_CLASSES[self._kinds[unit]]).decode, count=self._count)
 
     def _subscribe(
         self, message_type: Any, topic: str, take: Callable[[bytes], None], *, wakes: bool
@@ -231,23 +214,6 @@ class UnitNode(PollingNode):
         refused = refused_change(self._machine.raw(self._own_name), parameter_list)
         return refused or super().set_parameters_atomically(parameter_list)
 
-    def _write_parameters(self, wanted: Sequence[Any]) -> SetParametersResult:
-        """ROS has found them in order: the unit takes them by a command, which is recorded, or refuses.
-
-        Several at once are refused: the second one could fail when the first one has been taken already.
-        """
-        if self._shows_written:
-            return SetParametersResult(successful=True)
-        if len(wanted) != 1:
-            return refusal(f"{self.unit.name}: parameters are set one by one; nothing was changed")
-        self._shows_written = True
-        record = self.command(write_command(self.unit.name, wanted[0]))
-        self._shows_written = False
-        if not record.accepted:
-            return refusal(f"P-ERR-{record.error_id} {record.message}")
-        self._compute_ready_blocks()
-        return SetParametersResult(successful=True, reason=record.message)
-
     def _make_services(self) -> None:
         for command, service_type in SERVICES[self.unit.kind].items():
             callback = partial(self._on_service, command)
@@ -258,9 +224,9 @@ class UnitNode(PollingNode):
         if self._running:
             self._ready_timer.cancel()
             return
-        found = self._handover is not None or process.is_read(self, self._block_publisher, self._readers)
+        found = self._handover is not None or process.is_read(self, self._publications.blocks, self._readers)
         if found and all(subscription.get_publisher_count() for subscription in self._needed):
-            self._report()
+            self._publications.ready()
 
     # what arrives
 
@@ -322,8 +288,7 @@ class UnitNode(PollingNode):
 
     def tell(self, severity: int, error_id: int, text: str) -> None:
         """An event of the node, not of its unit."""
-        event = Event(self._gate.next_cycle, self.unit.name, severity, error_id, text)
-        self._event_publisher.publish(convert.event_to_message(event, self.stamp(event.cycle)))
+        self._publications.tell(self._gate.next_cycle, severity, error_id, text)
 
     def tell_unreadable(self, text: str) -> None:
         """As an event."""
@@ -379,7 +344,7 @@ class UnitNode(PollingNode):
             return self.refuse(command, CncError(RUN_OVER, "the run has ended"))
         if not self._running and source is not None and command.command != EMERGENCY_STOP:
             return self.refuse(command, CncError(NOT_BEGUN, "the run has not begun"))
-        with self._working():
+        with self._heartbeat.working():
             record = self._runner.command(command) if source is None else self._runner.asked(command, source)
         self._publish_records()
         return record
@@ -406,7 +371,7 @@ class UnitNode(PollingNode):
                 begun = self._gate.begin()
                 if begun is None:
                     return
-                with self._working():
+                with self._heartbeat.working():
                     self._runner.apply(*begun)
             self._follow_master()
             ready = self._gate.complete()
@@ -425,10 +390,9 @@ class UnitNode(PollingNode):
             if self._handover is not None:
                 self._handover.on_block(master, take, self.look)
                 return
-            kind = self._kinds[master]
-            on_message = partial(self._on_master_message, chain(codec_of(BLOCK_CLASSES[kind]).decode, take))
-            received = self.readable(block_topic(master), on_message)
-            self.create_subscription(BLOCK_TYPES[kind], block_topic(master), received, REMEMBERED_BLOCKS, raw=True)
+            on_message = partial(self._on_master_message, chain(self._decoder(master), take))
+            received, block_type = self.readable(block_topic(master), on_message), BLOCK_TYPES[self._kinds[master]]
+            self.create_subscription(block_type, block_topic(master), received, REMEMBERED_BLOCKS, raw=True)
 
     def _on_master_message(self, take: Callable[[bytes], None], data: bytes) -> None:
         """The first ones are the history of the topic, up to 10 s: old ones are not even decoded."""
@@ -440,10 +404,11 @@ class UnitNode(PollingNode):
         self._gate.add_master_block(master, block)
 
     def _compute(self, tick: CycleTick, inputs: dict[str, CycleBlock]) -> None:
-        with self._working():
+        with self._heartbeat.working():
             block = self._runner.compute(tick, inputs)
         self._publish_records()  # first: a recording that ends here has all commands that led to its last states
-        self._publish_block(block)
+        self._publications.block(block)
+        self._heartbeat.block_sent()
         self.diagnostics.add_block(block)
         scheduled = self._scheduled_ns.pop(tick.first_cycle, 0)
         if scheduled:
@@ -452,10 +417,9 @@ class UnitNode(PollingNode):
         if isinstance(plc, PlcBlock) and plc.run_done:
             self._gate.close()
         self.after_block(block)
-        if self._live_state is not None and not isinstance(block, PlcBlock):
-            self._live_state.publish(block, self._stamps)
-        if self._checkpoints is not None and self._checkpoints.is_due(self._runner.next_cycle):
-            self._publish_checkpoint(self._checkpoints, block)
+        self._publications.live_state(block)
+        with self._heartbeat.working():
+            self._publications.checkpoint(self._runner, block)
         self._end_if_over()
 
     def _end_if_over(self) -> None:
@@ -463,16 +427,6 @@ class UnitNode(PollingNode):
             self._ended = True
             self._publish_diagnostics()
             self.run_ended()
-
-    def _publish_checkpoint(self, checkpoints: UnitCheckpoints, block: CycleBlock) -> None:
-        """An event for the first one that cannot be stored; later ones may be those of another program."""
-        try:
-            with self._working():
-                checkpoints.publish(self._runner, block, self._stamps)
-        except CncError as error:
-            if not self._has_told_state:
-                self._has_told_state = True
-                self.tell(Severity.INFO, error.number, f"{self.unit.name}: {error.reason}; {WITHOUT_STATES}")
 
     def run_ended(self) -> None:
         """For subclasses: the last block has been computed."""
@@ -484,30 +438,15 @@ class UnitNode(PollingNode):
         """For subclasses: publishes more of a block."""
 
     def stamp(self, cycle: int) -> Time:
-        return convert.time_message(self._stamps.at(cycle))
-
-    def _publish_block(self, block: CycleBlock) -> None:
-        if self._handover is None or self._block_publisher.get_subscription_count():
-            self._block_publisher.publish(encode_block(block, self._stamps))
-        if self._handover is not None:
-            self._handover.block(self.unit.name, block)
-        self._heartbeat_at = time.monotonic()
+        return self._publications.stamp(cycle)
 
     def _publish_records(self) -> None:
         for record in self.unit.take_records():
-            self._show_written(record)
-            self._record_publisher.publish(convert.record_to_message(record, self.stamp(record.cycle)))
+            self._shown.follow(record)
+            self._publications.record(record)
         for event in self.unit.take_events():
             self.diagnostics.note(event)
-            self._event_publisher.publish(convert.event_to_message(event, self.stamp(event.cycle)))
-
-    def _show_written(self, record: CommandRecord) -> None:
-        """A parameter that somebody else has written is what ROS shows from now on."""
-        shown = None if self._shows_written else written_parameter(self._machine.raw(self._own_name), record)
-        if shown is not None and self.has_parameter(shown.name):
-            self._shows_written = True
-            super().set_parameters_atomically([shown])
-            self._shows_written = False
+            self._publications.event(event)
 
     # watchdog
 
@@ -520,8 +459,7 @@ class UnitNode(PollingNode):
         if self._alone:
             self._tick_alone()
             return
-        if time.monotonic() - self._heartbeat_at > self._watchdog.seconds / 4.0:
-            self._publish_heartbeat()
+        self._heartbeat.send_if_due()
         for source in self._watchdog.silent(self._gate.missing(), begun=self._gate.next_cycle > self._count):
             self._lose(source, None)
         self._compute_ready_blocks()
@@ -547,43 +485,10 @@ class UnitNode(PollingNode):
             self._gate.add_tick(CycleTick(self._gate.next_cycle, self._count))
             self._compute_ready_blocks()
 
-    def _report(self) -> None:
-        """To the clock: ready."""
-        self._report_publisher.publish(msg.BlockReport(source=self.unit.name, first_cycle=-1))
-
-    def _publish_heartbeat(self) -> None:
-        """To all: this node is alive."""
-        self._heartbeat_at = time.monotonic()
-        self._heartbeat_publisher.publish(msg.BlockReport(source=self.unit.name, first_cycle=self._gate.next_cycle))
-
-    @contextmanager
-    def _working(self) -> Iterator[None]:
-        self._busy = True
-        try:
-            yield
-        finally:
-            self._busy = False
-
-    def _heartbeat_while_busy(self) -> None:
-        """A long command (a big program is interpreted) must not look like a dead node, but an endless one must."""
-        period = self._watchdog.seconds / 4.0
-        busy_for = 0.0
-        while self.context.ok():
-            if self._busy and 0.0 < busy_for < LONGEST_COMMAND:
-                self._publish_heartbeat()
-            busy_for = busy_for + period if self._busy else 0.0
-            time.sleep(period)
-
     def _publish_diagnostics(self) -> None:
-        if not self._running:
-            return
-        message = DiagnosticArray(status=[self.diagnostics.status(self._gate.duplicates)])
-        message.header.stamp = self.stamp(self._gate.next_cycle)
-        self._diagnostics_publisher.publish(message)
-        if self.diagnostics.lateness.counts:
-            lateness = self.diagnostics.lateness.message(self.unit.name)
-            lateness.header.stamp = message.header.stamp
-            self._lateness_publisher.publish(lateness)
+        if self._running:
+            came_twice, next_cycle = self._gate.duplicates, self._gate.next_cycle
+            self._publications.diagnostics(self.diagnostics, came_twice=came_twice, next_cycle=next_cycle)
 
     def destroy_node(self) -> None:
         super().destroy_node()
