@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import json
 import threading
 import time
 from collections.abc import Callable, Mapping
@@ -20,6 +19,7 @@ from cnc_ptp.axis.jog_commands import JOG
 from cnc_ptp.client.faults import GONE, NOT_STARTED
 from cnc_ptp.client.link import Link, Reply, reply_of
 from cnc_ptp.client.observations import Observations
+from cnc_ptp.client.record_arguments import record_arguments
 from cnc_ptp.client.started_graph import STOP_TIME, StartedGraph
 from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import HeldSignals
@@ -309,7 +309,7 @@ class Jogging:
         return bool(self._records) or self._ignored is not None
 
     def take_record(self, record: CommandRecord) -> None:
-        if json.loads(record.arguments_json).get("velocity") == self._sender.velocity:
+        if record_arguments(record).get("velocity") == self._sender.velocity:
             self._records.append(record)
 
     def take_event(self, event: Event) -> None:

@@ -111,6 +111,8 @@ class Supervisor:
         self._watched = watched or options.stay
         self._processes: dict[str, BaseProcess] = {}
         self._stop_deadline: float | None = None
+        self._stop_is_due = False
+        """The PLC is to stop everything, and has not been told yet."""
         self._settled_at = 0.0
         self._dead: set[str] = set()
         self._interrupted = False
@@ -152,6 +154,7 @@ class Supervisor:
 
     def _look(self) -> None:
         self._monitor.take_polled()
+        self._tell_to_stop()
         self._show(self._monitor)
 
     # processes
@@ -232,12 +235,18 @@ class Supervisor:
             self._stop_everything()
 
     def _stop_everything(self) -> None:
-        if PLC not in self._dead:
-            self._stop_all.call_async(srv.Execute.Request())
+        self._stop_is_due = PLC not in self._dead
+        self._tell_to_stop()
         now = time.monotonic()
         self._stop_deadline = now + STOP_TIMEOUT
         self._settled_at = now + 3.0 * self._machine.watchdog_ms / 1000.0 + 0.5
         self._monitor.watch_standstill([name for name in self._moving_units if name not in self._dead])
+
+    def _tell_to_stop(self) -> None:
+        """Once: what is sent before the service is found is lost."""
+        if self._stop_is_due and self._stop_all.service_is_ready():
+            self._stop_is_due = False
+            self._stop_all.call_async(srv.Execute.Request())
 
     def _what_follows(self) -> str:
         return "everything stops on its ramps" if self._monitor.cycle else "nothing has moved yet"
@@ -284,11 +293,14 @@ class Supervisor:
                 child.join()
 
     def _close_recordings(self) -> None:
-        """Closes what a recorder that was killed was writing, so that every reader opens it."""
+        """Closes what a recorder that was killed or has failed was writing, so that every reader opens it."""
         recorder = self._processes.get(RECORDER)
-        closed = recorder is None or recorder.exitcode in (0, process.SIGNALLED + signal.SIGTERM)
-        if closed or not self._monitor.cycle:
+        status = None if recorder is None else recorder.exitcode
+        if recorder is None or status in (0, process.SIGNALLED + signal.SIGTERM) or not self._monitor.cycle:
             return
+        if status is not None and not self._dead & {RECORDER, SERVER}:
+            how = f"node '{RECORDER}' (process {recorder.pid}) {how_ended(status)} at the end of the run"
+            self.failures.append(f"P-ERR-{NODE_DIED} {how}; its recording goes as far as it was written")
         for recording in filter(None, (self._options.record, self._monitor.on_demand)):
             try:
                 close_cut_recording(recording)

@@ -17,7 +17,7 @@ from recording_support import Blocks
 from spin_support import spin_until
 
 from cnc_ptp import msg
-from cnc_ptp.client.graph_link import GraphLink
+from cnc_ptp.client.graph_link import GraphLink, Jogging
 from cnc_ptp.errors import CncError
 from cnc_ptp.nodes import process
 from cnc_ptp.nodes.client.latest_blocks import LatestBlocks
@@ -40,7 +40,7 @@ from cnc_ptp.nodes.topics import (
     block_topic,
 )
 from cnc_ptp.parameters import read_machine
-from cnc_ptp.protocol.blocks import PlcBlock, Severity
+from cnc_ptp.protocol.blocks import CommandRecord, PlcBlock, Severity
 from cnc_ptp.recording.reader import read_recording
 from cnc_ptp.recording.run_inputs import RunInputs
 from cnc_ptp.recording.writing_place import require_writable
@@ -249,6 +249,19 @@ def test_bytes_that_are_no_block_do_not_cost_the_beginning_of_a_recording(around
     assert [event.text for event in read_recording(path).events] == ["early"]
 
 
+def test_a_recording_that_cannot_be_closed_is_an_error_of_the_recorder(around, tmp_path):
+    """Its events would reach nobody: all others have ended."""
+    _, recorder, _ = around(lambda: RecorderNode(read_machine(str(PTP)), str(tmp_path / "a.mcap"), PTP.read_text()))
+
+    def close():
+        raise CncError(26007, "recording a.mcap: cannot be written: No space left on device", "nothing is recorded")
+
+    recorder._sinks.append(SimpleNamespace(close=close))
+    recorder.destroy_node()
+    with pytest.raises(CncError, match=r"P-ERR-26007 recording a\.mcap: cannot be written"):
+        process.raise_failure([recorder])
+
+
 def test_bytes_that_are_no_message_end_no_client():
     link = GraphLink.__new__(GraphLink)
     for take, of in ((link._take_event, "Event"), (link._take_record, "CommandRecord")):
@@ -263,6 +276,13 @@ def test_bytes_that_are_no_message_end_no_client():
     blocks = LatestBlocks(node, {"x": "axis"}, rotary=())
     subscribed[block_topic("x")](NO_MESSAGE)
     assert blocks.views() == []
+
+
+def test_foreign_records_of_a_jog_are_no_answers():
+    jogging = Jogging("x", "me", SimpleNamespace(velocity=5.0))
+    for arguments in ("", "{", "[5.0]", "[" * 100_000, '{"velocity": 4.0}', '{"velocity": 5.0}'):
+        jogging.take_record(CommandRecord(0, "x", "jog", arguments, True, 0, ""))
+    assert [record.arguments for record in jogging._records] == ['{"velocity": 5.0}']
 
 
 @pytest.mark.parametrize("service", [SetParameters, SetParametersAtomically])
