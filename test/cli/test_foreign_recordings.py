@@ -1,9 +1,14 @@
 """MCAP files of other programs: which commands refuse them, with which text (the table of docs/recordings.md)."""
 
+from types import SimpleNamespace
+
 import pytest
 from commands_support import MILL, call, served
 from mcap.writer import Writer
 from recording_support import foreign_file, smooth_run
+
+from cnc_ptp.commands.look.report import program_of
+from cnc_ptp.protocol.blocks import CommandRecord
 
 NOT_OURS = "P-ERR-26017 recording {foreign}: is not of cnc_ptp; nothing was drawn; `cnc_ptp export` reads its topics"
 NOT_COMPARED = NOT_OURS.replace("drawn", "compared")
@@ -79,3 +84,10 @@ def test_no_message_of_ros(tmp_path):
     )
     assert " ".join(result.stderr.split()).endswith(": /note holds no messages of ROS 2; nothing was written")
     assert not saved.exists()
+
+
+def test_records_of_foreign_programs_name_no_program():
+    given = ("", "{", "[]", "{}", '{"program": "a.nc"}')
+    records = [CommandRecord(0, "channel", "load", arguments, True, 0, "") for arguments in given]
+    assert program_of(SimpleNamespace(commands=records)) == "a.nc"
+    assert program_of(SimpleNamespace(commands=records[:-1])) == ""

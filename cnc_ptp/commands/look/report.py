@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
@@ -10,6 +9,7 @@ from pathlib import Path
 from cnc_ptp.commands.output_file import check_page, write_output
 from cnc_ptp.plots.comparison import page_of, units_of
 from cnc_ptp.plots.report import report_page
+from cnc_ptp.recording.command_words import json_object
 from cnc_ptp.recording.difference import PROGRAM, compared
 from cnc_ptp.recording.long_recording import read_own
 from cnc_ptp.recording.reader import Recorded
@@ -51,4 +51,5 @@ def report(
 def program_of(recorded: Recorded) -> str:
     """File name of the first NC program that was loaded, empty if none was."""
     loads = (record for record in recorded.commands if record.command == "load" and record.accepted)
-    return next((str(json.loads(record.arguments_json)["program"]) for record in loads), "")
+    given = (json_object(record.arguments_json) or {} for record in loads)
+    return next((str(values["program"]) for values in given if "program" in values), "")
