@@ -168,9 +168,9 @@ def test_a_jog_goes_on_while_the_client_lives(m):
 
 
 def test_events_and_states_come_as_iterators(m):
-    events = m.events(duration=3.0)
+    events, coming = m.events(duration=3.0), m.x.states(duration=1.5)
     job = m.x.move_relative(5)
-    states = [state for state in m.x.states(duration=1.0) if state.cycle >= job.cycle]
+    states = [state for state in coming if state.cycle >= job.cycle]
     assert [state.cycle for state in states] == [*range(job.cycle, states[-1].cycle + 1)]
     assert max(state.set_velocity for state in states) > 0.0
     assert [event.text for event in events if event.source == "x"] == [
