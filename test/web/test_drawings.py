@@ -1,7 +1,11 @@
 """Backplots: what nobody wants any more ends, and holds up no other one."""
 
 import asyncio
+import signal
+import subprocess
+import sys
 
+import psutil
 import pytest
 from web_support import MILL, site
 
@@ -103,6 +107,21 @@ def test_numbers_of_cancelled_drawings():
         assert [Cancelled.has(number) for number in (4, 5, 6, 5 + SLOTS)] == [False, True, False, False]
     finally:
         Cancelled.share(before)
+
+
+KILLED = """
+import os, signal
+from cnc_ptp.web.programs.drawing_office import DrawingOffice
+print(DrawingOffice()._started().submit(os.getpid).result(), flush=True)
+os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def test_the_process_that_draws_ends_with_a_server_that_is_killed():
+    server = subprocess.run([sys.executable, "-c", KILLED], stdout=subprocess.PIPE, text=True, timeout=PATIENCE)
+    assert server.returncode == -signal.SIGKILL
+    number = int(server.stdout)  # it has come to its end: nobody holds its output any longer
+    assert not psutil.pid_exists(number) or psutil.Process(number).status() == psutil.STATUS_ZOMBIE
 
 
 def test_a_page_gets_the_drawing_of_its_newest_program():

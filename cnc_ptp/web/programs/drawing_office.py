@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import multiprocessing
+import os
+import threading
 from collections.abc import MutableSequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
@@ -34,6 +36,19 @@ class Cancelled:
     @classmethod
     def has(cls, number: int) -> bool:
         return cls.numbers[number % SLOTS] == number
+
+
+def begin(numbers: MutableSequence[int]) -> None:
+    """The process that draws. It ends with its server: of one that was killed it would await drawings for ever."""
+    Cancelled.share(numbers)
+    threading.Thread(target=end_with_server, daemon=True).start()
+
+
+def end_with_server() -> None:
+    server = multiprocessing.parent_process()
+    assert server is not None
+    server.join()
+    os._exit(1)
 
 
 def try_to_draw(drawing: Drawing, number: int) -> bytes | str:
@@ -118,7 +133,7 @@ class DrawingOffice:
     def _started(self) -> ProcessPoolExecutor:
         if self._pool is None:
             shared = (self._cancelled,)
-            self._pool = ProcessPoolExecutor(1, mp_context=self._context, initializer=Cancelled.share, initargs=shared)
+            self._pool = ProcessPoolExecutor(1, mp_context=self._context, initializer=begin, initargs=shared)
         return self._pool
 
     def prepare(self) -> None:
