@@ -20,7 +20,7 @@ PTP = Path(__file__).parents[2] / "config" / "ptp.yaml"
 
 
 def reported(more=()):
-    return {"blocks": "7", "lost blocks": "0", "blocks that came twice": "1", **dict(more)}
+    return {"blocks": 7.0, "lost blocks": 0.0, "blocks that came twice": 1.0, **dict(more)}
 
 
 def monitor(diagnostics, *, notes=(), run_failed=False, programs=ONE_CHANNEL):
@@ -39,10 +39,10 @@ def monitor(diagnostics, *, notes=(), run_failed=False, programs=ONE_CHANNEL):
 
 def test_axes_come_in_the_order_of_the_machine_file(capsys):
     """The nodes report in any order; z has not reported at all."""
-    heard = {"c": ("0.5", "deg"), "y": ("0.25", "mm"), "x": ("0.125", "mm")}
+    heard = {"c": (0.5, "deg"), "y": (0.25, "mm"), "x": (0.125, "mm")}
     diagnostics = {"plc": reported()}
-    for name, (text, unit) in heard.items():
-        diagnostics[name] = reported({f"following error, largest [{unit}]": text})
+    for name, (error, unit) in heard.items():
+        diagnostics[name] = reported({f"following error, largest [{unit}]": error})
     print_summary(read_machine(PTP), monitor(diagnostics), [])
     assert capsys.readouterr().out.splitlines() == [
         f"machine time 0.070 s (70 cycles), {KERNEL.kind}",
