@@ -31,12 +31,15 @@ class Recorder:
         """Ends the recording, also that of the run, and closes it; it ends before `cycle`. Raises CncError 26191."""
         return self._ask("stop")
 
-    def snapshot(self, file: Path, seconds: float | None = None) -> Answer:
-        """Writes the last `seconds`, None: all that `keep` has kept. `cycle`: the first one; `warning`: it is less.
+    def snapshot(self, file: Path, seconds: float | None = None, until: float | None = None) -> Answer:
+        """Writes the `seconds` up to the time `until` of the machine, None: all that `keep` has kept, up to now.
+
+        `cycle`: the first one; `warning`: it is less.
 
         Raises CncError 26113, 26192, 26193, 26197.
         """
-        given = {} if seconds is None else {"seconds": seconds}
+        times = {"seconds": seconds, "until": until}
+        given = {name: float(value) for name, value in times.items() if value is not None}
         return self._ask("snapshot", file=os.path.abspath(fspath(file)), **given)
 
     def _ask(self, command: str, **arguments: Any) -> Answer:

@@ -55,7 +55,7 @@ class RecordingServices:
         recording.stop(done)
 
     def _snapshot(self, recording: OnDemand, request: Any, done: Done) -> None:
-        recording.snapshot(request.file, request.seconds, 0.0, done)
+        recording.snapshot(request.file, request.seconds, request.until, done)
 
     def _answer(self, response: Any, answer: Answer) -> None:
         error = answer.error

@@ -104,19 +104,19 @@ class DataRoutes:
         return web.Response(body=data, content_type="application/octet-stream", headers=NOT_STORED)
 
     async def _snapshot(self, request: web.Request) -> web.StreamResponse:
-        """`?seconds=N`: the last seconds of the machine as a recording, where it has a recorder.
+        """`?seconds=N&until=S`: seconds of the machine up to a time, now without it, where it has a recorder.
 
         `X-First-Cycle` of the answer: where it begins; later than asked for where the recorder has kept less.
         """
         login = self._access.login_of(request)
         require_role("snapshot", login.user, login.role, "operator")
-        seconds = number(request.query.get("seconds", "0"))
+        seconds, until = (number(request.query.get(name, "0")) for name in ("seconds", "until"))
         if self._snapshot_runs.locked():
             raise CncError(TOO_MANY_MESSAGES, "snapshot: another one is on its way", f"{NOTHING}; wait for it")
         async with self._snapshot_runs:
             with tempfile.TemporaryDirectory(prefix="cnc_ptp-") as folder:
                 file = Path(folder) / "snapshot.mcap"
-                first = await self._hub.require_face().snapshot(str(file), seconds)
+                first = await self._hub.require_face().snapshot(str(file), seconds, until)
                 return await sent(request, file, {"X-First-Cycle": str(first)})
 
 

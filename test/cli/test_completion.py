@@ -72,7 +72,7 @@ def test_what_the_recorder_can_be_told():
     assert sorted(completed("do", "recorder")) == ["snapshot", "start", "stop"]
     assert completed("do", "recorder", "start") == ["file="]
     assert completed("do", "recorder", "stop") == []
-    assert completed("do", "recorder", "snapshot", "file=a.mcap") == ["seconds="]
+    assert completed("do", "recorder", "snapshot", "file=a.mcap") == ["seconds=", "until="]
     assert completed("do", "recorder", "rewind") == []
 
 

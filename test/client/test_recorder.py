@@ -61,8 +61,11 @@ def test_a_snapshot_has_the_last_seconds(tmp_path):
         short = m.recorder.snapshot(tmp_path / "c.mcap", seconds=60)
         assert re.fullmatch(r"recorder: 2\S* s were kept and are in the snapshot, 60 s were asked for", short.warning)
         assert refused(m.recorder.snapshot, tmp_path / "d.mcap", -1.0).startswith("P-ERR-26197 ")
+        assert refused(m.recorder.snapshot, tmp_path / "d.mcap", until=m.time + 1.0).startswith("P-ERR-26197 ")
         end = m.cycle - 1
-    assert [computed_again(tmp_path / f"{name}.mcap") for name in "ab"] == [(end - 499, end), (end - 999, end)]
+        assert m.recorder.snapshot(tmp_path / "d.mcap", 0.5, until=1.5).cycle == 1000
+    spans = [(end - 499, end), (end - 999, end), (1000, 1499)]
+    assert [computed_again(tmp_path / f"{name}.mcap") for name in "abd"] == spans
 
 
 def test_the_recording_of_the_run_is_ended_by_stop_and_is_the_same_as_without_a_recorder(tmp_path):

@@ -142,12 +142,14 @@ def test_the_client_of_a_graph_records(tmp_path, monkeypatch):
         m.run_for(0.5)
         ended = m.recorder.stop()
         taken = m.recorder.snapshot("b.mcap", 0.3)
+        before = m.recorder.snapshot("c.mcap", 1, until=ended.cycle * 1e-3)
         with pytest.raises(CncError) as refused:
             m.recorder.stop()
         assert str(refused.value) == (
             "P-ERR-26191 recorder: stop refused: no recording is being written; nothing was changed"
         )
     assert full_blocks("a.mcap") == (began.cycle, ended.cycle - 1)
+    assert full_blocks("c.mcap") == (before.cycle, ended.cycle - 1)
     first, last = full_blocks("b.mcap")
     assert first == taken.cycle and 300 <= last - first + 1 <= 320
 

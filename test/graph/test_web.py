@@ -98,7 +98,7 @@ def test_a_machine_is_operated_and_its_server_killed(ros_domain, machine, folder
 def test_a_program_waits_for_a_page_and_a_page_takes_a_snapshot(ros_domain, machine, folder):
     """M6 to the page and its acknowledgement back over the graph; a reset; then the last seconds as a recording."""
     port = unused_port()
-    recording, snapshot = folder / "waits.mcap", folder / "snapshot.mcap"
+    recording, snapshot, earlier = (folder / f"{name}.mcap" for name in ("waits", "snapshot", "earlier"))
     program = "N10 M6\nN20 G1 X2 F6000\nN30 M6\nN40 G1 X4\nM30\n"
 
     async def story():
@@ -121,6 +121,10 @@ def test_a_program_waits_for_a_page_and_a_page_takes_a_snapshot(ros_domain, mach
             reply = await session.get(f"http://127.0.0.1:{port}/api/snapshot.mcap?seconds=1")
             assert reply.status == 200, await reply.text()
             snapshot.write_bytes(await reply.read())
+            until = answer["cycle"] * 1e-3
+            before = await session.get(f"http://127.0.0.1:{port}/api/snapshot.mcap?seconds=0.1&until={until}")
+            assert before.status == 200, await before.text()
+            earlier.write_bytes(await before.read())
             return first["cycle"], answer["cycle"], int(reply.headers["X-First-Cycle"])
 
     run = Running(machine, "--composed", "--web", str(port), "--stay", "--keep", "5", "--record", str(recording))
@@ -139,6 +143,7 @@ def test_a_program_waits_for_a_page_and_a_page_takes_a_snapshot(ros_domain, mach
     taken = verified(snapshot).states["/x/state"]
     assert set(taken["set_position"]) <= set(states["set_position"]) and len(taken) >= 1000
     assert taken["cycle"][0] == begin
+    assert verified(earlier).states["/x/state"]["cycle"][-1] == acknowledged - 1
 
 
 def test_a_run_is_killed_and_its_server_ends(ros_domain, machine):

@@ -169,7 +169,8 @@ def test_acknowledged_alarms_are_noted():
 def test_a_snapshot_is_sent_piece_by_piece_and_alone(monkeypatch, users):
     may_end = asyncio.Event()
 
-    async def snapshot(file, seconds):
+    async def snapshot(file, seconds, until):
+        assert (seconds, until) == (2.5, 7.25)
         await may_end.wait()
         with open(file, "wb") as stream:
             stream.write(b"x" * 600_000)
@@ -182,7 +183,7 @@ def test_a_snapshot_is_sent_piece_by_piece_and_alone(monkeypatch, users):
         text = "snapshot: vera is viewer; it takes the role operator; nothing was done"
         assert (answer.status, (await answer.json())["text"]) == (403, text)
         await page_of(here, "otto")
-        first = asyncio.create_task(here.client.get("/api/snapshot.mcap"))
+        first = asyncio.create_task(here.client.get("/api/snapshot.mcap?seconds=2.5&until=7.25"))
         await asyncio.sleep(0.2)
         answer = await here.client.get("/api/snapshot.mcap")
         text = "snapshot: another one is on its way; nothing was done; wait for it"

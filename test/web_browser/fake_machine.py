@@ -95,8 +95,8 @@ class Fake:
         self.role, self.has_login, self.logged_in = "commissioner", False, True
         self.refusals: dict[str, dict[str, Any]] = {}
         """Type of a message -> number and text with which it is refused."""
-        self.snapshots: list[str] = []
-        """Seconds of each snapshot that was asked for."""
+        self.snapshots: list[dict[str, str]] = []
+        """`seconds` and `until` of each snapshot that was asked for."""
         self.breaks_off = False
         """A snapshot ends before all of it was sent."""
         self.kept_from = 0
@@ -243,10 +243,12 @@ class Fake:
         )
 
     async def _snapshot(self, request: web.Request) -> web.StreamResponse:
-        self.snapshots.append(request.query["seconds"])
+        query = dict(request.query)
+        self.snapshots.append(query)
         if refusal := self.refusals.get("snapshot"):
             return web.json_response(refusal, status=400)
-        first = max(self.kept_from, self.cycle - round(float(self.snapshots[-1]) * 1000))
+        end = round(float(query["until"]) * 1000) if "until" in query else self.cycle
+        first = max(self.kept_from, end - round(float(query["seconds"]) * 1000))
         fields = {"X-First-Cycle": str(first)}
         if self.breaks_off:
             response = web.StreamResponse(headers={**fields, "Content-Length": str(len(SNAPSHOT))})

@@ -114,7 +114,7 @@ def test_a_snapshot_of_the_recorder_is_saved(look, fake):
         page.click("text=MCAP snapshot")
     assert download.value.suggested_filename == "snapshot.mcap"
     assert Path(download.value.path()).read_bytes() == SNAPSHOT
-    assert fake.snapshots == ["5"]
+    assert fake.snapshots == [{"seconds": "5"}]
 
 
 def test_a_snapshot_of_a_frozen_scope_has_its_window(look, fake):
@@ -125,19 +125,24 @@ def test_a_snapshot_of_a_frozen_scope_has_its_window(look, fake):
     eventually(page, lambda: fake.cycle > frozen + 1500)
     with page.expect_download():
         page.click("text=MCAP snapshot")
-    told = page.wait_for_selector(".notice.info >> text=/The snapshot has .* until now/").inner_text()
-    first, shown = re.fullmatch(
-        r"The snapshot has ([\d.]+) s until now; the picture begins at ([\d.]+) s\.", told
-    ).groups()
+    told = page.wait_for_selector(".notice.info >> text=/The snapshot has .* the whole picture/").inner_text()
+    first, end = re.fullmatch(r"The snapshot has ([\d.]+) s to ([\d.]+) s, the whole picture\.", told).groups()
     with page.expect_download() as download:
         page.click("text=Export CSV")
-    begin = float(Path(download.value.path()).read_text(encoding="utf-8").splitlines()[1].split(",")[1])
-    assert float(first) <= float(shown) == begin < frozen / 1000
-    assert float(fake.snapshots[-1]) <= (fake.cycle / 1000 - begin) + 1.1  # no more than it takes
-    fake.kept_from = fake.cycle
+    rows = Path(download.value.path()).read_text(encoding="utf-8").splitlines()[1:]
+    begin, last = (float(row.split(",")[1]) for row in (rows[0], rows[-1]))
+    assert float(first) == begin < last <= (frozen + 200) / 1000
+    assert [float(fake.snapshots[-1][name]) for name in ("until", "seconds")] == pytest.approx(
+        [last + 0.001, last + 0.001 - begin]
+    )
+    assert float(end) == pytest.approx(last + 0.001)
+    fake.kept_from = round(last * 1000)
     with page.expect_download():
         page.click("text=MCAP snapshot")
-    page.wait_for_selector(f".notice.warning >> text=the picture begins at {shown} s, which the recorder no longer has")
+    text = (
+        f"The snapshot has {last:.3f} s to {end} s; the picture begins at {first} s, which the recorder no longer has."
+    )
+    page.wait_for_selector(f".notice.warning >> text={text}")
 
 
 def test_the_machine_has_its_parameters_and_nothing_else(look):

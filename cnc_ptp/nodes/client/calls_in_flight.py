@@ -56,13 +56,13 @@ class CallsInFlight:
         what = f"{client.kinds[unit]} {unit}: {command}"
         self._begin(what, self._clients[unit, command], request, patience, answer)
 
-    def begin_snapshot(self, client: MachineClient, file: str, seconds: float, answer: Future[Any]) -> None:
+    def begin_snapshot(self, client: MachineClient, arguments: Mapping[str, Any], answer: Future[Any]) -> None:
         """Of the recorder; as `begin`."""
         command = "snapshot"
         if (RECORDER, command) not in self._clients:
             service = RECORDER_SERVICES[command]
             self._clients[RECORDER, command] = client.create_client(service, f"{RECORDER}/{command}")
-        request = request_of(RECORDER_SERVICES[command], {"file": file, "seconds": seconds})
+        request = request_of(RECORDER_SERVICES[command], arguments)
         self._begin(f"{RECORDER}: {command}", self._clients[RECORDER, command], request, SNAPSHOT_PATIENCE, answer)
 
     def _begin(self, what: str, client: Client[Any, Any], request: Any, patience: float, answer: Future[Any]) -> None:

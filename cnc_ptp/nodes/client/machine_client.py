@@ -197,7 +197,7 @@ def services_of(kind: str) -> dict[str, Any]:
 RECORDER_COMMANDS: dict[str, Arguments] = {
     "start": {"file": TEXT},
     "stop": {},
-    "snapshot": {"file": TEXT, "seconds": OPTIONAL_NUMBER},
+    "snapshot": {"file": TEXT, "seconds": OPTIONAL_NUMBER, "until": OPTIONAL_NUMBER},
 }
 """What the recorder can be told: it is no unit."""
 FIELDS = {"master_points": "table"}

@@ -89,8 +89,10 @@ class Face(ABC):
     async def ask(self, unit: str, command: str, arguments: Mapping[str, Any], *, user: str) -> Reply:
         """Gives a command. Raises the refusal of the unit, and CncError 22001, 22002, 26111, 26136, 26171, 26261."""
 
-    async def snapshot(self, file: str, seconds: float) -> int:
-        """The recorder writes its last seconds into a file, 0: all; the first cycle that it has.
+    async def snapshot(self, file: str, seconds: float, until: float) -> int:
+        """The recorder writes seconds up to a time of the machine into a file; the first cycle that it has.
+
+        0 seconds: all that is kept. `until` 0: now.
 
         Raises its refusal, CncError 26136, 26258.
         """

@@ -106,11 +106,11 @@ class WebLink(GraphLink):
         except Exception as error:  # for the page that has asked
             answer.set_exception(error)
 
-    def snapshot(self, file: str, seconds: float) -> Future[Any]:
+    def snapshot(self, arguments: Mapping[str, Any]) -> Future[Any]:
         """The response of the recorder."""
         answer: Future[Any] = Future()
         answer.set_running_or_notify_cancel()
-        self._thread.call(lambda client: self._calls.begin_snapshot(client, file, seconds, answer))
+        self._thread.call(lambda client: self._calls.begin_snapshot(client, arguments, answer))
         return answer
 
     def jog(self, axis: str, velocity: float, client: str) -> None:
@@ -141,8 +141,9 @@ class LiveFace(MachineFace):
     def programs(self) -> Mapping[str, Mapping[str, Any]]:
         return self._graph.programs
 
-    async def snapshot(self, file: str, seconds: float) -> int:
-        response = await asyncio.wrap_future(self._graph.snapshot(file, seconds))
+    async def snapshot(self, file: str, seconds: float, until: float) -> int:
+        arguments = {"file": file, "seconds": seconds, "until": until}
+        response = await asyncio.wrap_future(self._graph.snapshot(arguments))
         if not response.accepted:
             raise error_of(response.error_id, response.message, read_values(response.values_json))
         return int(response.cycle)

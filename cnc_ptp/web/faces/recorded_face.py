@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Mapping
 from math import inf
 from operator import attrgetter
@@ -182,7 +182,8 @@ class RecordedFace(Face):
 
     def _records(self, begin: float, end: float) -> list[CommandRecord]:
         """Of commands that have changed zero offsets, from a cycle up to another one."""
-        return [record for record in self.file.offset_records if begin <= record.cycle < end]
+        records = self.file.offset_records
+        return records[bisect_left(records, begin, key=CYCLE) : bisect_left(records, end, key=CYCLE)]
 
     def _events_by(self, time: float) -> int:
         """How many events have come by a time; at the end all, though its last digits be lost."""
@@ -206,7 +207,7 @@ class RecordedFace(Face):
     async def ask(self, unit: str, command: str, arguments: Mapping[str, Any], *, user: str) -> Reply:
         raise is_recording(f"{unit}: {command}")
 
-    async def snapshot(self, file: str, seconds: float) -> int:
+    async def snapshot(self, file: str, seconds: float, until: float) -> int:
         raise is_recording("snapshot")
 
     def jog(self, axis: str, velocity: float, *, user: str) -> None:

@@ -208,6 +208,12 @@ export class Capture {
     return Math.max(from, ring.begin) * step + shift;
   }
 
+  /** The cycle behind the picture. */
+  get behind() {
+    const { ring, to, step, shift } = this.shown();
+    return Math.min(to, ring.end) * step + shift;
+  }
+
   /** First and last time (s) of the picture. */
   get range() {
     const shown = this.shown();

@@ -7,7 +7,6 @@ import { formula } from "./expression.js";
 import { csv, download, removeView, saveView, savedViews } from "./views.js";
 
 const WINDOWS = ["0.1", "0.2", "0.5", "1", "2", "5", "10", "20", "60"];
-const ON_THE_WAY = 1; // s that may pass until the recorder is asked
 const SLOPES = [["rising", "rising, above"], ["falling", "falling, below"], ["both", "both edges"]];
 
 export function runPanel(app, capture, picture) {
@@ -27,26 +26,33 @@ export function runPanel(app, capture, picture) {
     const state = capture.isFrozen ? "Frozen" : capture.mode === "off" ? "Running" : capture.trigger.cycle === null ? "Waiting for the trigger" : "Triggered";
     return say(status, `${state} · ${samplesOf(capture.shown())}`);
   }, 200);
-  /** From the begin of what is shown until now, whenever it was frozen. */
+  /** The window that is held, or the last seconds. */
   const snapshot = async () => {
-    const { begin, cycleTime, held } = capture;
-    const seconds = Math.max(1, capture.window, held ? app.store.time - begin * cycleTime + ON_THE_WAY : 0);
-    const answer = await app.attempt(app.connection.http(`/api/snapshot.mcap?seconds=${Number(seconds.toFixed(3))}`, { as: "response" }));
+    const { begin, behind, cycleTime } = capture;
+    const isHeld = capture.held && behind > begin;
+    const seconds = isHeld ? (behind - begin) * cycleTime : Math.max(1, capture.window);
+    const until = isHeld ? `&until=${rounded(behind * cycleTime)}` : "";
+    const answer = await app.attempt(app.connection.http(`/api/snapshot.mcap?seconds=${rounded(seconds)}${until}`, { as: "response" }));
     if (!answer) return;
     const bytes = await app.attempt(answer.arrayBuffer());
     if (!bytes) return;
     const first = Number(answer.headers.get("X-First-Cycle"));
     download("snapshot.mcap", bytes, "application/octet-stream");
-    const [from, shown] = [first, begin].map((cycle) => `${fixed(cycle * cycleTime, 3)} s`);
-    if (!held) return; // what runs has gone on meanwhile
-    if (first > begin) app.notices.show("warning", `The snapshot has ${from} until now; the picture begins at ${shown}, which the recorder no longer has.`);
-    else app.notices.show("info", `The snapshot has ${from} until now; the picture begins at ${shown}.`);
+    if (!isHeld) return; // what runs has gone on meanwhile
+    const [from, to, shown] = [first, behind, begin].map((cycle) => `${fixed(cycle * cycleTime, 3)} s`);
+    if (first > begin) app.notices.show("warning", `The snapshot has ${from} to ${to}; the picture begins at ${shown}, which the recorder no longer has.`);
+    else app.notices.show("info", `The snapshot has ${from} to ${to}, the whole picture.`);
   };
   const element = panel(
     "Scope", h("div", { class: "row end" }, field("Window", length), freeze, unzoom), status,
     h("div", { class: "row" }, button("Export CSV", () => download("scope.csv", csv(capture))), !capture.isRecording && app.store.role !== "viewer" && button("MCAP snapshot", snapshot)),
   );
   return { element, refresh: () => (length.value = String(capture.window)) };
+}
+
+/** A time (s) to the microsecond. */
+function rounded(time) {
+  return Number(time.toFixed(6));
 }
 
 /** How many samples there are, whether they are of every cycle, and how many are missing. */
