@@ -74,6 +74,10 @@ def request_to_message(request: HandshakeRequest, stamp: Time) -> msg.HandshakeR
     return _flat(request, msg.HandshakeRequest, stamp)
 
 
+def message_to_request(message: msg.HandshakeRequest) -> HandshakeRequest:
+    return HandshakeRequest(**{name: getattr(message, name) for name in _names(msg.HandshakeRequest)})
+
+
 def offsets_to_message(offsets: ChannelOffsets, stamp: Time) -> msg.ChannelOffsets:
     return _flat(offsets, msg.ChannelOffsets, stamp)
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, fields
+from dataclasses import asdict
 from typing import Any, Protocol
 
-from cnc_ptp.client.record_arguments import record_arguments, written_parameter
+from cnc_ptp.client.record_arguments import written_parameter
 from cnc_ptp.protocol.blocks import (
     ChannelBlock,
     ChannelOffsets,
@@ -17,13 +17,14 @@ from cnc_ptp.protocol.blocks import (
 )
 from cnc_ptp.web.faces.alarms import Alarms, event_fields
 from cnc_ptp.web.faces.distances import DistancesToGo
-from cnc_ptp.web.faces.face import Face, Past, State
+from cnc_ptp.web.faces.face import Face, News, Past, State
+from cnc_ptp.web.faces.handshakes import Handshakes
 from cnc_ptp.web.faces.lag_range import lag_ranges
 from cnc_ptp.web.faces.offset_table import OffsetTable
 from cnc_ptp.web.faces.program_watch import ProgramWatch
 from cnc_ptp.web.faces.switches import Switches
 from cnc_ptp.web.faces.targets import Targets
-from cnc_ptp.web.protocol import difference, is_of_kind
+from cnc_ptp.web.protocol import difference
 
 EVENTS_KEPT = 500
 """Events that a page keeps (static/store.js)."""
@@ -47,8 +48,8 @@ class View:
         self.pages: list[Looking] = []
         self.programs = programs
         self.alarms = Alarms()
-        self.handshakes: dict[int, dict[str, Any]] = {}
         channels = [unit for unit, kind in face.kinds.items() if kind == "channel"]
+        self.handshakes = Handshakes(channels)
         self.tables = {unit: OffsetTable(face.sets[unit], face.sets) for unit in channels}
         self.targets = Targets([unit for unit, kind in face.kinds.items() if kind == "axis"])
         self._distances = DistancesToGo()
@@ -63,22 +64,32 @@ class View:
         """What a page that comes now gets at first."""
         return {
             "alarms": self.alarms.list(),
-            "handshakes": [*self.handshakes.values()],
+            "handshakes": [*self.handshakes.waiting.values()],
             "programs": self.programs.all(),
             "offsets": self.offsets,
         }
 
     def tell(self) -> bool:
         """What has come since the last time, to all pages; whether a channel has another program."""
-        face = self.face
-        units = face.state()  # before the news: a program that it names has its command among them
-        if (past := face.past()) is not None:
-            self._tell_past(past, face.cycle_time)
-        news = face.news()
+        units = self.face.state()  # before the news: a program that it names has its command among them
+        if (past := self.face.past()) is not None:
+            self._tell_past(past, self.face.cycle_time)
+        news = self.face.news()
+        self._tell_news(news)
+        state = self._completed(units, news.blocks)
+        changes = difference(state, self._state)
+        self._state = state
+        has_loaded = self._tell_programs(changes)
+        for page in [*self.pages]:
+            page.send_state(self.face.time, state, changes)
+            page.take_blocks(news.blocks)
+        return has_loaded
+
+    def _tell_news(self, news: News) -> None:
         for event in news.events:
-            self._tell_event(event, face.cycle_time)
+            self._tell_event(event, self.face.cycle_time)
         for request in news.requests:
-            self.tell_request(request)
+            self._tell_request(request)
         self._tell_earlier_offsets(news.offsets)
         for record in news.records:
             self._tell_answered(record, [*self._blocks, *news.blocks])
@@ -86,14 +97,17 @@ class View:
             if isinstance(block, ChannelBlock):
                 self._distances.take_block(unit, block)
                 self._tell_offsets(unit, block)
-                self.drop_handshakes(unit, block)
+                self._tell_done(self.handshakes.take_block(unit, block))
         self._blocks = news.blocks
         self._tell_tables()
         if news.diagnostics:
             self.to_all({"type": "diagnostics", "nodes": [*news.diagnostics]})
+
+    def _completed(self, units: State, blocks: Sequence[tuple[str, CycleBlock]]) -> State:
+        """The state of units with what no block of them says; `blocks` that are new."""
         distances = self._distances.fields(units, self._state, self.targets.positions)
-        lags = lag_ranges(news.blocks)
-        state = {
+        lags = lag_ranges(blocks)
+        return {
             unit: {
                 **fields,
                 **self._switches.fields.get(unit, {}),
@@ -103,13 +117,6 @@ class View:
             }
             for unit, fields in units.items()
         }
-        changes = difference(state, self._state)
-        self._state = state
-        has_loaded = self._tell_programs(changes)
-        for page in [*self.pages]:
-            page.send_state(face.time, state, changes)
-            page.take_blocks(news.blocks)
-        return has_loaded
 
     def to_all(self, message: Mapping[str, Any]) -> None:
         for page in self.pages:
@@ -127,12 +134,11 @@ class View:
         alarm = self.alarms.take(fields)
         self.to_all({"type": "event", **(alarm or fields)})
 
-    def tell_request(self, request: HandshakeRequest) -> None:
+    def _tell_request(self, request: HandshakeRequest) -> None:
         """A function of a program; pages get those that wait for an acknowledgement."""
         self._switches.take_request(request)
-        if request.acknowledge_needed:
-            self.handshakes[request.id] = request_fields(request)
-            self.to_all({"type": "handshake", **request_fields(request)})
+        if self.handshakes.take_request(request):
+            self.to_all({"type": "handshake", **self.handshakes.waiting[request.id]})
 
     def _tell_answered(self, record: CommandRecord, blocks: Sequence[tuple[str, CycleBlock]]) -> None:
         """A request that was acknowledged, an offset that was changed, by whomever."""
@@ -143,8 +149,7 @@ class View:
             self._tell_parameters(record.target)
         if record.target in self.tables:
             self.tables[record.target].take_record(record, blocks)
-        if record.command == "acknowledge" and record.accepted:
-            self._end_handshake(record_arguments(record).get("id", 0))
+        self._tell_done(self.handshakes.take_record(record))
 
     def _tell_parameters(self, unit: str) -> None:
         """A parameter of it was written: pages read them again; limits that follow come with it."""
@@ -152,16 +157,10 @@ class View:
         for each in described:
             self.to_all({"type": "parameters", "unit": unit, "described": each})
 
-    def _end_handshake(self, number: Any) -> None:
-        if is_of_kind(number, "integer") and self.handshakes.pop(number, None) is not None:
+    def _tell_done(self, numbers: Sequence[int]) -> None:
+        """Of requests that wait no longer."""
+        for number in numbers:
             self.to_all({"type": "handshake_done", "id": number})
-
-    def drop_handshakes(self, channel: str, block: ChannelBlock) -> None:
-        """Those of a program that has ended, or was reset: nobody waits for them."""
-        if block.done:
-            for number, request in [*self.handshakes.items()]:
-                if request["channel"] == channel and request["cycle"] < block.first_cycle:
-                    self._end_handshake(number)
 
     def _tell_past(self, past: Past, cycle_time: float) -> None:
         """In place of all that pages know: theirs is another time of the recording now."""
@@ -200,7 +199,3 @@ class View:
         self.tables[channel].take_active(offsets)
         if self.offsets.get(channel, {}).get("cycle", 0) <= offsets.cycle:
             self.offsets[channel] = {"channel": channel, **asdict(offsets)}
-
-
-def request_fields(request: HandshakeRequest) -> dict[str, Any]:
-    return {each.name: getattr(request, each.name) for each in fields(HandshakeRequest)}

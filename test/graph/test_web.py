@@ -14,6 +14,8 @@ from aiohttp.test_utils import unused_port
 from graph_support import Running, command, small_machine, verified
 from web_support import Page
 
+from cnc_ptp.client import Machine
+from cnc_ptp.errors import CncError
 from cnc_ptp.recording.reader import read_recording
 
 
@@ -205,6 +207,60 @@ def test_pages_that_are_older_than_the_graph_and_outlive_it(ros_domain, machine)
         assert server.wait(15) == 0
     finally:
         server.kill()
+
+
+PALLETS = """    pzv_grp: {"1": {achse: {"0": {versatz: 15000}}}}
+    spdl_anzahl: 1
+"""
+"""Clamp position 1: X 1.5 mm."""
+
+
+def test_a_server_that_begins_late_knows_what_was_before(ros_domain, machine, folder):
+    """Alarms, offsets, the tool, and the function that waits; so a taught offset is known, and the program goes on."""
+    port, pallets = unused_port(), folder / "pallets.yaml"
+    pallets.write_text(machine.read_text().replace("    spdl_anzahl: 1\n", PALLETS))
+
+    def before():
+        with Machine.connect(timeout=30.0) as m:
+            with pytest.raises(CncError):
+                m.x.move_absolute(1e6)
+            m.channel.set_clamp_position(1)
+            m.channel.set_zero_offset(2, "X", 4)
+            m.plc.auto_acknowledge(False)
+            m.channel.load("part.nc", text="N10 T2\nN20 M6\nN30 G1 X2 F6000\nM30\n")
+            m.channel.start()
+            m.run_for(2.0)  # what has come then is behind the last blocks that are kept
+
+    async def story():
+        async with ClientSession(cookie_jar=CookieJar(unsafe=True)) as session:
+            page = await open_page(session, port)
+            await page.state_of("channel", lambda channel: channel.get("tool") == 2)
+            offsets = page.hello["offsets"].get("channel") or await page.wait_for("offsets")
+            assert (offsets["clamp_index"], offsets["clamp_offset"][0]) == (1, 1.5)
+            [alarm] = page.hello["alarms"] or [await page.wait_for("event", lambda event: event.get("alarm"))]
+            assert alarm["source"] == "x"
+            [waiting] = page.hello["handshakes"] or [await page.wait_for("handshake")]
+            assert (waiting["kind"], waiting["number"], waiting["line"]) == ("M", 6, 2)
+            assert (await page.command("plc", "acknowledge", id=waiting["id"]))["ok"]
+            await page.state_of("channel", lambda channel: channel.get("active") is False)  # x is at 3.5
+            assert (await page.command("channel", "teach_zero_offset", index=3, axis="X"))["ok"]
+            told = await page.wait_for("zero_offsets", lambda told: any(row["index"] == 3 for row in told["offsets"]))
+            assert {row["name"]: row["values"]["X"] for row in told["offsets"]}.items() >= {
+                "G55": 4.0,
+                "G56": 2.0,
+            }.items()
+
+    run = Running(pallets, "--composed", "--stay")
+    server = None
+    try:
+        before()
+        server = subprocess.Popen(command("web", "--port", port), stdout=subprocess.PIPE, text=True)
+        assert f"http://localhost:{port}" in server.stdout.readline()
+        asyncio.run(asyncio.wait_for(story(), 60.0))
+    finally:
+        if server is not None:
+            server.kill()
+        run.end()
 
 
 def test_pages_of_a_run_with_tls_on_another_address(ros_domain, machine, folder):

@@ -5,6 +5,9 @@ import asyncio
 import pytest
 from web_support import site, waiting_mill
 
+from cnc_ptp.protocol.blocks import ChannelBlock, CommandRecord, HandshakeRequest
+from cnc_ptp.web.faces.handshakes import Handshakes
+
 X_MOVES = "N20 G1 X2 F6000\nN30 M30\n"
 FUNCTIONS = {
     "M": ("N10 M6\n", [("M", 6, 0.0, "")]),
@@ -158,3 +161,40 @@ def test_what_another_client_acknowledges_leaves_the_pages_too(machine):
         await page.state_of("x", lambda x: x["set_position"] == 2.0)
 
     run(story, machine)
+
+
+def m6(cycle, number):
+    return HandshakeRequest(cycle, number, "channel", "M", "", 6, 0.0, 1, True)
+
+
+def accepted(cycle, target, command, **arguments):
+    return CommandRecord(cycle, target, command, arguments, True, 0, "")
+
+
+def test_a_program_that_has_ended_waits_for_nothing():
+    handshakes = Handshakes(["channel"])
+    assert handshakes.take_request(m6(500, 7))
+    assert handshakes.take_block("channel", ChannelBlock(500, 20, done=True)) == []  # from before it
+    assert handshakes.take_block("channel", ChannelBlock(520, 20, done=False)) == []
+    assert [*handshakes.waiting] == [7]
+    assert handshakes.take_block("channel", ChannelBlock(540, 20, done=True)) == [7]
+    assert handshakes.waiting == {}
+
+
+def test_what_waits_is_known_in_whatever_order_a_server_that_begins_late_is_told():
+    """7 was acknowledged, 8 withdrawn by a reset; the programs after it wait for 9."""
+    told = [m6(500, 7), m6(600, 8), m6(900, 9)]
+    told += [accepted(520, "plc", "acknowledge", id=7), accepted(700, "channel", "reset"), accepted(800, "x", "reset")]
+    told.append(CommandRecord(950, "plc", "acknowledge", {"id": 9}, False, 22013, "refused"))
+    told.append(accepted(960, "plc", "acknowledge", id=[9]))  # of somebody else
+    for order in orders(told):
+        handshakes = Handshakes(["channel"])
+        for each in order:
+            take = handshakes.take_request if isinstance(each, HandshakeRequest) else handshakes.take_record
+            take(each)
+        assert [*handshakes.waiting] == [9]
+
+
+def orders(told):
+    """As they are, backwards, and each of them first."""
+    return [told, told[::-1], *([told[place], *told[:place], *told[place + 1 :]] for place in range(len(told)))]

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 from web_support import page_of, site, users_file
 
-from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, CommandRecord, HandshakeRequest
+from cnc_ptp.protocol.blocks import AxisBlock, CommandRecord
 from cnc_ptp.web.commissioning.tasks import Tasks
 from cnc_ptp.web.faces.targets import Targets
 
@@ -65,24 +65,6 @@ def test_the_state_has_targets_and_the_emergency_stop():
         await page.state_of("plc", lambda plc: plc.get("emergency_stop") is True)
         other = await here.page(commands=False)
         await other.state_of("plc", lambda plc: plc.get("emergency_stop") is True)
-
-    run(story)
-
-
-def test_handshakes_of_a_program_that_was_reset():
-    async def story(here):
-        page = await here.page()
-        cycle = 10**9  # the blocks of the machine itself come before it
-        request = HandshakeRequest(cycle, 7, "channel", "M", "", 6, 0.0, 1, True)
-        [session] = here.hub.sessions
-        view = session.view
-        view.tell_request(request)
-        assert (await page.wait_for("handshake"))["id"] == 7
-        view.drop_handshakes("channel", ChannelBlock(0, 20, done=True))  # from before it
-        view.drop_handshakes("channel", ChannelBlock(cycle + 1, 20, done=False))
-        assert 7 in view.handshakes
-        view.drop_handshakes("channel", ChannelBlock(cycle + 1, 20, done=True))
-        assert await page.wait_for("handshake_done") == {"type": "handshake_done", "id": 7}
 
     run(story)
 

@@ -22,8 +22,18 @@ from cnc_ptp.client.link import Reply
 from cnc_ptp.nodes import convert
 from cnc_ptp.nodes.client.calls_in_flight import CallsInFlight
 from cnc_ptp.nodes.client.machine_client import MachineClient, services_of
-from cnc_ptp.nodes.topics import DIAGNOSTICS, EVENT, EVENTS, LATEST, PLC_INPUT, jog_topic, offsets_topic, program_topic
-from cnc_ptp.protocol.blocks import ChannelOffsets, Event, Severity, read_values
+from cnc_ptp.nodes.topics import (
+    DIAGNOSTICS,
+    EVENT,
+    EVENTS,
+    LATEST,
+    PLC_INPUT,
+    handshake_topic,
+    jog_topic,
+    offsets_topic,
+    program_topic,
+)
+from cnc_ptp.protocol.blocks import ChannelOffsets, Event, HandshakeRequest, Severity, read_values
 from cnc_ptp.web.faces.face import News
 from cnc_ptp.web.faces.machine_face import SOURCE, MachineFace, taken
 from cnc_ptp.wire.block_codec import channel_offsets
@@ -49,6 +59,7 @@ class WebLink(GraphLink):
         self.programs: dict[str, dict[str, Any]] = {}
         self.diagnostics: deque[dict[str, Any]] = deque(maxlen=MOST_DIAGNOSTICS)
         self.offsets: deque[tuple[str, ChannelOffsets]] = deque()
+        self.requests: deque[HandshakeRequest] = deque()
         """Of channels, also those from before this process."""
         self._calls = CallsInFlight()
         self._jog_publishers: dict[str, Publisher[msg.Jog]] = {}
@@ -56,6 +67,7 @@ class WebLink(GraphLink):
         super().__init__(domain=domain, namespace=namespace)
 
     def _subscribe(self, client: MachineClient) -> None:
+        self.events, self.records = self.seen.events(), self.seen.records()  # before the first one comes
         super()._subscribe(client)
         self._event_publisher = client.create_publisher(msg.Event, EVENT, EVENTS)
         client.create_subscription(DiagnosticArray, DIAGNOSTICS, self._take_diagnostics, PLC_INPUT)
@@ -64,6 +76,7 @@ class WebLink(GraphLink):
                 client.create_subscription(msg.ProgramState, program_topic(unit), self._take_program, LATEST)
                 take_offsets = partial(self._take_offsets, unit)
                 client.create_subscription(msg.ChannelOffsets, offsets_topic(unit), take_offsets, EVENTS)
+                client.create_subscription(msg.HandshakeRequest, handshake_topic(unit), self._take_request, EVENTS)
             if kind == "axis":
                 self._jog_publishers[unit] = client.create_publisher(msg.Jog, jog_topic(unit), PLC_INPUT)
             for command in FREQUENT[kind]:
@@ -85,6 +98,9 @@ class WebLink(GraphLink):
 
     def _take_offsets(self, channel: str, message: msg.ChannelOffsets) -> None:
         self.offsets.append((channel, channel_offsets(message)))
+
+    def _take_request(self, message: msg.HandshakeRequest) -> None:
+        self.requests.append(convert.message_to_request(message))
 
     def _after(self, client: MachineClient) -> None:
         self._calls.go_on()
@@ -135,6 +151,7 @@ class LiveFace(MachineFace):
     def __init__(self, machine: Machine, link: WebLink) -> None:
         super().__init__(machine)
         self._graph = link
+        self._events, self._records = link.events, link.records
         self._first: dict[str, int] = {}
         """Unit -> first cycle of its first block here."""
 
@@ -153,9 +170,15 @@ class LiveFace(MachineFace):
         news.diagnostics = taken(self._graph.diagnostics)
         for unit, block in news.blocks:
             self._first.setdefault(unit, block.first_cycle)
-        earlier = (each for each in taken(self._graph.offsets) if each[1].cycle < self._first.get(each[0], inf))
+        earlier = (each for each in taken(self._graph.offsets) if self._is_earlier(each[0], each[1].cycle))
         news.offsets = [*news.offsets, *earlier]
+        asked = (each for each in taken(self._graph.requests) if self._is_earlier(each.channel, each.cycle))
+        news.requests = [*asked, *news.requests]
         return news
+
+    def _is_earlier(self, channel: str, cycle: int) -> bool:
+        """What it tells of a cycle comes with none of its blocks here."""
+        return cycle < self._first.get(channel, inf)
 
     async def _answer_to(self, unit: str, command: str, arguments: Mapping[str, Any], user: str) -> Reply:
         response = await asyncio.wrap_future(self._graph.call(unit, command, arguments))

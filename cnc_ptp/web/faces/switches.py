@@ -28,6 +28,8 @@ class Switches:
 
     def __init__(self) -> None:
         self.fields: dict[str, dict[str, Any]] = {PLC: {EMERGENCY_STOP: False}}
+        self._cycles: dict[tuple[str, str], int] = {}
+        """Unit and field -> cycle of what is known."""
 
     def take_record(self, record: CommandRecord) -> None:
         """A switch that was commanded, by whomever."""
@@ -35,9 +37,15 @@ class Switches:
         if record.accepted and is_switch:
             given = record_arguments(record)
             enabled = given.get("enabled", given.get("on"))  # its former name
-            self.fields.setdefault(record.target, {})[record.command] = bool(enabled)
+            self._set(record.target, record.command, bool(enabled), record.cycle)
 
     def take_request(self, request: HandshakeRequest) -> None:
         """A tool of a program."""
         if request.kind in TOOLS:
-            self.fields.setdefault(request.channel, {})[TOOLS[request.kind]] = request.number
+            self._set(request.channel, TOOLS[request.kind], request.number, request.cycle)
+
+    def _set(self, unit: str, field: str, value: Any, cycle: int) -> None:
+        """Unless something newer is known: what was before the server began may come late."""
+        if cycle >= self._cycles.get((unit, field), cycle):
+            self._cycles[unit, field] = cycle
+            self.fields.setdefault(unit, {})[field] = value
