@@ -161,7 +161,9 @@ def client_access(machine: MachineParameters, units: Iterable[NodeAccess]) -> No
     """Command line, pages and Python clients: all services and actions, jogs, and what shows the machine."""
     kinds = unit_kinds(machine)
     reads = {EVENT, COMMAND, DIAGNOSTICS, *map(block_topic, kinds)}
-    reads |= {topic(channel) for channel in machine.channels for topic in (program_topic, offsets_topic, handshake_topic)}
+    reads |= {
+        topic(channel) for channel in machine.channels for topic in (program_topic, offsets_topic, handshake_topic)
+    }
     nodes = [*units, recorder_access(machine)]
     return NodeAccess(
         CLIENT,

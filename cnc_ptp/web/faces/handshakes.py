@@ -12,7 +12,7 @@ from cnc_ptp.protocol.blocks import ChannelBlock, CommandRecord, HandshakeReques
 from cnc_ptp.web.protocol import is_of_kind
 
 KEPT = 1000
-"""Numbers that were acknowledged: as many as a server is told of that begins late."""
+"""Numbers that were acknowledged: as many as a server gets that begins late."""
 
 
 class Handshakes:

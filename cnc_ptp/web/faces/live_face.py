@@ -177,7 +177,7 @@ class LiveFace(MachineFace):
         return news
 
     def _is_earlier(self, channel: str, cycle: int) -> bool:
-        """What it tells of a cycle comes with none of its blocks here."""
+        """None of its blocks here has what it says of a cycle."""
         return cycle < self._first.get(channel, inf)
 
     async def _answer_to(self, unit: str, command: str, arguments: Mapping[str, Any], user: str) -> Reply:
