@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,6 +18,7 @@ from cnc_ptp.parameters import ChannelParameters, MachineParameters, load_machin
 from cnc_ptp.path.geometry import NEGLIGIBLE_MM, Arc
 from cnc_ptp.protocol.blocks import CommandRecord
 from cnc_ptp.protocol.channel_states import IN_PROGRAM
+from cnc_ptp.recording.command_words import json_object
 from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, Recorded
 from cnc_ptp.wire.layout import Records
 
@@ -147,16 +147,18 @@ def known_blocks(recorded: Recorded, machine: MachineParameters, name: str) -> K
     None for manual blocks alone, for a program that was not started at its beginning, and where something is missing.
     """
     load, start = (first_command(recorded, name, command) for command in ("load", "start"))
-    if load is None or start is None or json.loads(start.arguments_json or "{}"):
+    if load is None or start is None or json_object(start.arguments_json or "{}") != {}:
         return None
-    channel, values = machine.channels[name], json.loads(load.arguments_json)
-    axes = recorded.of_type(AXIS_STATE)
-    if "text" not in values or not all(axis.node in axes for axis in channel.axes):
+    channel, values = machine.channels[name], json_object(load.arguments_json) or {}
+    axes, dialect = recorded.of_type(AXIS_STATE), values.get("dialect")
+    if not {"program", "text"} <= values.keys() or not all(axis.node in axes for axis in channel.axes):
+        return None
+    if dialect and dialect not in VOCABULARIES:
         return None
     begin = tuple([position_at(axes[axis.node], start.cycle) for axis in channel.axes])
     check = ProgramCheck(channel, machine.axes, machine.spindles)
     begin += check.start[len(begin) :]
-    vocabulary = VOCABULARIES[values["dialect"]] if values.get("dialect") else check.vocabulary
+    vocabulary = VOCABULARIES[dialect] if dialect else check.vocabulary
     try:
         program = parse_program(values["text"], values["program"], files=values.get("files", {}), vocabulary=vocabulary)
         return Known(channel, begin, check.known_ahead(program, begin, check.state({}, {}, {})).blocks)

@@ -47,7 +47,7 @@ def argument_words(arguments_json: str, distance: str) -> str:
 def json_object(text: str) -> dict[str, Any] | None:
     try:
         values = arguments_of(text)
-    except ValueError:
+    except (ValueError, RecursionError):
         return None
     return values if isinstance(values, dict) else None
 

@@ -8,6 +8,8 @@ from mcap.writer import Writer
 from recording_support import foreign_file, smooth_run
 
 from cnc_ptp.commands.look.report import program_of
+from cnc_ptp.parameters import read_machine
+from cnc_ptp.plots.program_run import known_blocks
 from cnc_ptp.protocol.blocks import CommandRecord
 
 NOT_OURS = "P-ERR-26017 recording {foreign}: is not of cnc_ptp; nothing was drawn; `cnc_ptp export` reads its topics"
@@ -91,3 +93,16 @@ def test_records_of_foreign_programs_name_no_program():
     records = [CommandRecord(0, "channel", "load", arguments, True, 0, "") for arguments in given]
     assert program_of(SimpleNamespace(commands=records)) == "a.nc"
     assert program_of(SimpleNamespace(commands=records[:-1])) == ""
+
+
+def test_records_of_foreign_programs_have_no_known_blocks():
+    axes: dict[str, list[object]] = {axis: [] for axis in "xyz"}
+    text = '{"program": "a.nc", "text": "M30"'
+    loads = ("", "[" * 100_000, "[]", "{}", '{"text": "M30"}', text + ', "dialect": "none"}')
+    for load, start in [*((load, "{}") for load in loads), (text + "}", "["), (text + "}", '{"line": 3}')]:
+        records = [
+            CommandRecord(0, "channel", command, arguments, True, 0, "")
+            for command, arguments in (("load", load), ("start", start))
+        ]
+        recorded = SimpleNamespace(commands=records, of_type=lambda _: axes)
+        assert known_blocks(recorded, read_machine(MILL), "channel") is None

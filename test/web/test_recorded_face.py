@@ -1,15 +1,17 @@
 """Pages of a recording."""
 
 import asyncio
+from pathlib import Path
 
 import numpy as np
 import pytest
+from recording_support import smooth_blocks
 from web_support import MILL, site
 
 from cnc_ptp.client import Machine
 from cnc_ptp.commands.run.web import connector
 from cnc_ptp.errors import CncError
-from cnc_ptp.protocol.blocks import Event
+from cnc_ptp.protocol.blocks import CommandRecord, Event
 from cnc_ptp.recording.opened import OpenRecording
 from cnc_ptp.recording.writer import Recording
 from cnc_ptp.web.faces import recorded_file
@@ -146,6 +148,24 @@ def test_samples_are_of_every_cycle_as_far_as_is_asked(recording):
             assert some.tobytes() == whole[:, ::step].tobytes()
 
     asyncio.run(story())
+
+
+@pytest.mark.motion_unchecked("its blocks are those of no machine")
+def test_what_no_unit_sends_is_left_out(tmp_path):
+    """A state, a severity and a load that only somebody else can have published."""
+    path = tmp_path / "run.mcap"
+    blocks = [(name, block) for name, block in smooth_blocks(0.1) if name == "x"]
+    blocks[3][1].state[:] = [99] * 10
+    with Recording(path, Path(MILL).read_text()) as recording:
+        for number in (0, 3):
+            recording.event(Event(number, "x", number, 23001, "told"))
+        recording.command(CommandRecord(0, "channel", "load", "[]", True, 0, ""))
+        for name, block in blocks:
+            recording.block(name, block)
+    file = RecordedFile(str(path))
+    assert [block.first_cycle for block in file.first.blocks["x"]] == [0, 10, 20, *range(40, 100, 10)]
+    assert [event.severity for event in file.events] == [0] and file.programs == []
+    file.close()
 
 
 def test_an_answer_has_a_limit(recording, monkeypatch):

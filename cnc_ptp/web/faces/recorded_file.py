@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections import OrderedDict
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import fields
 from pathlib import Path
 from typing import Any, BinaryIO, NamedTuple
@@ -14,10 +15,11 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 
 from cnc_ptp.client.record_arguments import record_arguments
+from cnc_ptp.errors import CncError
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes.topics import BLOCK_CLASSES
 from cnc_ptp.parameters import load_machine
-from cnc_ptp.protocol.blocks import ChannelOffsets, CommandRecord, CycleBlock, Event
+from cnc_ptp.protocol.blocks import ChannelOffsets, CommandRecord, CycleBlock, Event, Severity
 from cnc_ptp.recording.opened import OpenRecording
 from cnc_ptp.recording.parts import files_of
 from cnc_ptp.web.faces.description import describe_units
@@ -72,7 +74,7 @@ class RecordedFile:
         self.programs = [
             (record.cycle, record.target, load_of(record_arguments(record)))
             for record in records
-            if record.command == "load"
+            if record.command == "load" and "program" in record_arguments(record)
         ]
         """Cycle, channel, and each program that was loaded."""
         self.offset_records = [record for record in records if record.command in OFFSET_COMMANDS]
@@ -139,7 +141,8 @@ class RecordedFile:
             read = make_reader(file).iter_messages([*topics, DIAGNOSTICS], starting_at=begin, ending_before=end)
             for schema, channel, message in read:
                 if unit := topics.get(channel.topic):
-                    window.blocks[unit].append(codecs[unit].decode(message.data))
+                    with suppress(CncError):  # what no unit sends
+                        window.blocks[unit].append(codecs[unit].decode(message.data))
                 elif schema is not None and schema.name == DIAGNOSTICS_TYPE:
                     decode: Any = decoders.decoder_for("cdr", schema)
                     time = (message.log_time - self._recording.start_ns) * NS
@@ -152,7 +155,8 @@ class RecordedFile:
         names = ("cycle", "source", "severity", "error_id", "text", "line")
         columns = self._recording.columns("/events", *names)
         rows = zip(*(columns[name].tolist() for name in names), strict=True)
-        return sorted((Event(*row) for row in rows), key=lambda event: event.cycle)
+        events = (Event(*row) for row in rows)
+        return sorted((each for each in events if each.severity <= max(Severity)), key=lambda event: event.cycle)
 
     def _read_offsets(self) -> list[tuple[str, ChannelOffsets]]:
         """Channel, and what lies between its programmed and machine positions from a cycle on."""
