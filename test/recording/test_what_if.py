@@ -11,6 +11,7 @@ import pytest
 from hli_support import message
 from long_support import long
 from machine_support import ROOT
+from recording_support import smooth_blocks
 from state_support import Run
 
 from cnc_ptp.commands.run.replay import end_of
@@ -339,7 +340,10 @@ class OneBlock:
 def test_of_two_equal_commands_one_may_be_that_of_the_plc() -> None:
     stop, start = Command("s", "stop"), Command("s", "set_speed", {"rpm": 100.0})
     records = [CommandRecord(10, each.target, each.command, each.arguments_json, True, 0, "") for each in (stop, start)]
-    answers = RecordedAnswers(OneBlock(ChannelBlock(10, 0, commands=[stop, start]), records), 0)  # type: ignore[arg-type]
+    block = next(block for name, block in smooth_blocks(0.1) if name == "channel" and block.first_cycle == 10)
+    assert isinstance(block, ChannelBlock)
+    block.commands = [stop, start]
+    answers = RecordedAnswers(OneBlock(block, records), 0)  # type: ignore[arg-type]
     other = replace(records[1], arguments='{"rpm": 200.0}')
     assert [answers.gives(each) for each in (records[0], records[0], other, records[1])] == [True, False, False, True]
 
