@@ -94,7 +94,7 @@ class Hub:
                 await asyncio.sleep(AGAIN)
 
     async def _live_with(self, face: Face) -> None:
-        """Until its machine is gone; raises what is a mistake of ours, when pages and face know it."""
+        """Until its machine is gone, or cannot be shown; raises why, when pages and face know it."""
         running = asyncio.create_task(face.run())
         try:
             self._begin_with(face)
@@ -102,11 +102,8 @@ class Hub:
                 await asyncio.sleep(PERIOD)
                 self._tell()
             running.result()
-        except CncError as error:
-            self._tell_gone(error)
-            await asyncio.to_thread(face.close)
-        except Exception as error:  # a mistake of ours must not leave pages that show the past
-            self._tell_gone(server_failed(error))
+        except Exception as error:  # also a mistake of ours must not leave pages that show the past
+            self._tell_gone(error if isinstance(error, CncError) else server_failed(error))
             await asyncio.to_thread(face.close)
             raise
         finally:

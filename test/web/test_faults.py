@@ -239,17 +239,21 @@ def test_a_machine_that_cannot_be_shown_is_tried_again(monkeypatch, capsys):
     assert "a mistake" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("error", [ZeroDivisionError("a mistake"), CncError(26135, "a refusal", "nothing was shown")])
 @pytest.mark.parametrize("broken", ["last_loads", "state"])
-def test_a_machine_that_can_never_be_shown_is_tried_again_after_a_pause_and_left_each_time(monkeypatch, broken):
+def test_a_machine_that_can_never_be_shown_is_tried_again_after_a_pause_and_left_each_time(monkeypatch, broken, error):
     """Whether its first look fails or a later one."""
     begun, ended = [], []
+
+    def fail():
+        raise error
 
     def connect():
         face = offline_face(MILL, stands=True)
         begun.append(time.monotonic())
         close = face.close
         monkeypatch.setattr(face, "close", lambda: (ended.append(1), close()))
-        monkeypatch.setattr(face, broken, lambda: 1 / 0)
+        monkeypatch.setattr(face, broken, fail)
         return face
 
     monkeypatch.setattr("cnc_ptp.web.hub.AGAIN", 0.5)
