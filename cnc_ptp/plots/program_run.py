@@ -18,7 +18,7 @@ from cnc_ptp.parameters import ChannelParameters, MachineParameters, load_machin
 from cnc_ptp.path.geometry import NEGLIGIBLE_MM, Arc
 from cnc_ptp.protocol.blocks import CommandRecord
 from cnc_ptp.protocol.channel_states import IN_PROGRAM
-from cnc_ptp.recording.command_words import json_object
+from cnc_ptp.recording.command_words import is_load, json_object
 from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, Recorded
 from cnc_ptp.wire.layout import Records
 
@@ -151,7 +151,7 @@ def known_blocks(recorded: Recorded, machine: MachineParameters, name: str) -> K
         return None
     channel, values = machine.channels[name], json_object(load.arguments_json) or {}
     axes, dialect = recorded.of_type(AXIS_STATE), values.get("dialect")
-    if not {"program", "text"} <= values.keys() or not all(axis.node in axes for axis in channel.axes):
+    if not (is_load(values) and values.get("text")) or not all(axis.node in axes for axis in channel.axes):
         return None
     if dialect and dialect not in VOCABULARIES:
         return None
@@ -160,7 +160,9 @@ def known_blocks(recorded: Recorded, machine: MachineParameters, name: str) -> K
     begin += check.start[len(begin) :]
     vocabulary = VOCABULARIES[dialect] if dialect else check.vocabulary
     try:
-        program = parse_program(values["text"], values["program"], files=values.get("files", {}), vocabulary=vocabulary)
+        program = parse_program(
+            values["text"], values["program"], files=values.get("files") or {}, vocabulary=vocabulary
+        )
         return Known(channel, begin, check.known_ahead(program, begin, check.state({}, {}, {})).blocks)
     except CncError:
         return None

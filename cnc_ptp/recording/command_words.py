@@ -52,6 +52,13 @@ def json_object(text: str) -> dict[str, Any] | None:
     return values if isinstance(values, dict) else None
 
 
+def is_load(arguments: Mapping[str, Any]) -> bool:
+    """Whether a channel can have taken them with `load`: texts, and texts by name."""
+    files = arguments.get("files") or {}
+    texts = [arguments.get("program"), *(arguments.get(name) or "" for name in ("text", "dialect"))]
+    return isinstance(files, Mapping) and all(isinstance(each, str) for each in [*texts, *files.values()])
+
+
 def shortened(text: str, letters: int) -> str:
     return text if len(text) <= letters else text[: letters - 1] + "…"
 

@@ -95,10 +95,20 @@ def test_records_of_foreign_programs_name_no_program():
     assert program_of(SimpleNamespace(commands=records[:-1])) == ""
 
 
+NO_LOADS = (
+    '{"program": "a.nc", "text": 5}',
+    '{"program": "a.nc", "text": null}',
+    '{"program": ["a.nc"], "text": "M30"}',
+    '{"program": "a.nc", "text": "M30", "files": [1]}',
+    '{"program": "a.nc", "text": "M30", "files": {"b.nc": 5}}',
+    '{"program": "a.nc", "text": "M30", "dialect": ["iso"]}',
+)
+
+
 def test_records_of_foreign_programs_have_no_known_blocks():
     axes: dict[str, list[object]] = {axis: [] for axis in "xyz"}
     text = '{"program": "a.nc", "text": "M30"'
-    loads = ("", "[" * 100_000, "[]", "{}", '{"text": "M30"}', text + ', "dialect": "none"}')
+    loads = ("", "[" * 100_000, "[]", "{}", '{"text": "M30"}', text + ', "dialect": "none"}', *NO_LOADS)
     for load, start in [*((load, "{}") for load in loads), (text + "}", "["), (text + "}", '{"line": 3}')]:
         records = [
             CommandRecord(0, "channel", command, arguments, True, 0, "")

@@ -57,6 +57,14 @@ def loaded(channel, path, text, *, accepted=True):
     return CommandRecord(1, channel, "load", {"program": path, "text": text}, accepted, 0, "")
 
 
+def test_what_no_channel_takes_as_a_program_is_none(tmp_path):
+    """Anybody on the graph may publish a record."""
+    watch = ProgramWatch(ProgramFolder(tmp_path))
+    for path, text in ((5, "M30"), ("a.nc", 5), ("a.nc", ["M30"])):
+        watch.take_record(loaded("channel", path, text))
+    assert watch.all() == []
+
+
 def test_two_channels_with_programs_of_one_name(tmp_path):
     watch = ProgramWatch(ProgramFolder(str(tmp_path)))
     watch.take_record(loaded("a", "/one/part.nc", "A"))

@@ -159,7 +159,8 @@ def test_what_no_unit_sends_is_left_out(tmp_path):
     with Recording(path, Path(MILL).read_text()) as recording:
         for number in (0, 3):
             recording.event(Event(number, "x", number, 23001, "told"))
-        recording.command(CommandRecord(0, "channel", "load", "[]", True, 0, ""))
+        for load in ("[]", '{"program": 5, "text": "M30"}', '{"program": "a.nc", "text": 5}'):
+            recording.command(CommandRecord(0, "channel", "load", load, True, 0, ""))
         for name, block in blocks:
             recording.block(name, block)
     file = RecordedFile(str(path))

@@ -11,9 +11,9 @@ from cnc_ptp.client.record_arguments import record_arguments
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.program_files import read_file
 from cnc_ptp.protocol.blocks import CommandRecord
+from cnc_ptp.recording.command_words import is_load
 from cnc_ptp.web.numbers import NO_PROGRAM
 from cnc_ptp.web.programs.programs import ProgramFolder
-from cnc_ptp.web.protocol import is_of_kind
 
 REMEMBERED = 4
 """Loads of a channel: its state may be behind its records."""
@@ -35,7 +35,7 @@ class Load:
 
 def load_of(arguments: Mapping[str, Any]) -> Load:
     """Of the arguments of `load`, as a record has them."""
-    return Load(arguments["program"], arguments.get("text"), arguments.get("files", {}))
+    return Load(arguments["program"], arguments.get("text"), arguments.get("files") or {})
 
 
 class ProgramWatch:
@@ -54,7 +54,7 @@ class ProgramWatch:
         if record.command != "load" or not record.accepted:
             return
         given = record_arguments(record)
-        if is_of_kind(given.get("program"), "text"):
+        if is_load(given):
             load = load_of(given)
             self._known[record.target] = [load, *self._known.get(record.target, [])][:REMEMBERED]
             self.take(record.target, load)

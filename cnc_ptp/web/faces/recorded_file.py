@@ -20,6 +20,7 @@ from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes.topics import BLOCK_CLASSES
 from cnc_ptp.parameters import load_machine
 from cnc_ptp.protocol.blocks import ChannelOffsets, CommandRecord, CycleBlock, Event, Severity
+from cnc_ptp.recording.command_words import is_load
 from cnc_ptp.recording.opened import OpenRecording
 from cnc_ptp.recording.parts import files_of
 from cnc_ptp.web.faces.description import describe_units
@@ -74,7 +75,7 @@ class RecordedFile:
         self.programs = [
             (record.cycle, record.target, load_of(record_arguments(record)))
             for record in records
-            if record.command == "load" and "program" in record_arguments(record)
+            if record.command == "load" and is_load(record_arguments(record))
         ]
         """Cycle, channel, and each program that was loaded."""
         self.offset_records = [record for record in records if record.command in OFFSET_COMMANDS]
