@@ -74,8 +74,10 @@ class Encoder:
         interpreters: Iterable[RunningBlocks] = (),
         lists: LongLists | None = None,
     ) -> None:
-        """`interpreters` that the graph leads to; `lists` that were kept beside earlier states."""
-        self._lists: LongLists = {} if lists is None else lists
+        """`interpreters` that the graph leads to; `lists` that were kept beside the state before."""
+        self._known_lists: LongLists = {} if lists is None else lists
+        self.lists: LongLists = {}
+        """Those that are kept beside this one."""
         self.rows: list[Row] = []
         self.shapes: list[list[Any]] = []
         self._roots, self._texts = roots, texts
@@ -183,13 +185,14 @@ class Encoder:
 
     def _floats_beside(self, found: list[Any]) -> str | None:
         """The digest of a list of floats that is kept beside the states; None where it holds anything else."""
-        known = self._lists.get(id(found))
+        known = self._known_lists.get(id(found))
         if known is not None and len(known[1]) == len(found) and all(map(is_, known[1], found)):
+            self.lists[id(found)] = known
             return known[2]
         if {*map(type, found)} != {float}:
             return None
         digest = self._kept_beside(base64.b64encode(np.array(found, FLOAT).tobytes()).decode())
-        self._lists[id(found)] = found, found.copy(), digest
+        self.lists[id(found)] = found, found.copy(), digest
         return digest
 
     def _set(self, found: set[Any], row: Row) -> None:

@@ -77,15 +77,10 @@ class StateStore:
         """Some units before a cycle, and the last blocks of some. Raises CncError 26150."""
         encoder = Encoder(self._roots, self.texts, interpreters(runners), self._lists)
         root = encoder.encode([runners, blocks])
+        self._lists = encoder.lists
         text = json.dumps([next_cycle, root, encoder.shapes, encoder.rows], separators=(",", ":"))
         rest = zstandard.compress(text.encode(), LEVEL)
         return MAGIC + LAYOUT.to_bytes(2, "little") + kernel_digest() + check_sum(rest) + rest
-
-    def forget_texts(self, most_lists: int) -> None:
-        """Texts, which somebody else has; and lists when there are more: those of programs that are gone."""
-        self.texts.clear()
-        if len(self._lists) > most_lists:
-            self._lists.clear()
 
     def restore(self, state: bytes) -> MachineState:
         """New units in a state. Raises CncError 26151 for damaged bytes, 26152 for those of another kernel."""

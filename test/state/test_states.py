@@ -344,13 +344,29 @@ def test_floats_that_have_changed_are_kept_again() -> None:
     lists: LongLists = {}
     roots = Roots({})
     for _ in range(2):
-        Encoder(roots, texts, lists=lists).encode(numbers)
-        assert len(texts) == 1
+        encoder = Encoder(roots, texts, lists=lists)
+        encoder.encode(numbers)
+        lists = encoder.lists
+        assert len(texts) == len(lists) == 1
     numbers[3] = -0.0
     encoder = Encoder(roots, texts, lists=lists)
     value = encoder.encode(numbers)
     again = Decoder(encoder.rows, encoder.shapes, roots, texts).decode(value)
     assert len(texts) == 2 and math.copysign(1.0, again[3]) == -1.0
+
+
+def test_long_lists_that_are_gone_are_forgotten() -> None:
+    """Of a machine with many cycles in a block each block has some."""
+    text = (ROOT / "config" / "mill.yaml").read_text()
+    machine = load_machine(text.replace("block_cycles: 10", "block_cycles: 400"), "mill.yaml")
+    offline = OfflineMachine(machine, build_units(machine, scenario=entries(SKIPPED)))
+    store, counts = StateStore(machine), []
+    for _ in range(4):
+        offline.tick()
+        offline.tick()
+        store.encode(offline)
+        counts.append(len(store._lists))
+    assert counts[0] > 2 and counts == [counts[0]] * 4
 
 
 def refusal(store: StateStore, state: bytes) -> str:

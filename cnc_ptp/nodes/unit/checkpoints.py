@@ -20,9 +20,6 @@ from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.state.machine_state import StateStore, kernel_digest
 from cnc_ptp.wire.stamps import Stamps
 
-MOST_LISTS = 8
-"""Long lists whose digests are remembered; those of programs that are gone are forgotten with all others."""
-
 
 class UnitCheckpoints:
     """Publishes the state of a unit whenever its time has come and somebody records."""
@@ -50,7 +47,7 @@ class UnitCheckpoints:
         state = self._store.encode_units(runner.next_cycle, units, {name: block})
         texts = [text for digest, text in self._store.texts.items() if digest not in self._told]
         self._told |= self._store.texts.keys()
-        self._store.forget_texts(MOST_LISTS)
+        self._store.texts.clear()  # the recorder has them
         message = msg.UnitCheckpoint(next_cycle=runner.next_cycle, unit=name, state=state, texts_json=json.dumps(texts))
         message.header.stamp = convert.time_message(stamps.at(runner.next_cycle))
         self._publisher.publish(message)
