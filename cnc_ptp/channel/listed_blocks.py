@@ -49,7 +49,7 @@ class ListedBlocks:
     def __init__(self, begin: ProgramBegin, blocks: list[CanonicalBlock]) -> None:
         self.begin = begin
         self.taken = 0
-        self._blocks = blocks
+        self._blocks, self._count = blocks, len(blocks)
 
     def __iter__(self) -> Iterator[CanonicalBlock]:
         return self
@@ -58,10 +58,13 @@ class ListedBlocks:
         """Raises StopIteration."""
         if self.ended:
             raise StopIteration
+        block = self._blocks[self.taken]
         self.taken += 1
-        return self._blocks[self.taken - 1]
+        if self.ended:
+            self._blocks = []
+        return block
 
     @property
     def ended(self) -> bool:
         """All were taken."""
-        return self.taken == len(self._blocks)
+        return self.taken == self._count

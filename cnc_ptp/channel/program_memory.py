@@ -160,11 +160,12 @@ class ProgramMemory:
         return StartedProgram(stream, times, before)
 
     def _ready(self, program: Program, start: Position, state: ProgramState) -> PreparedProgram | None:
-        """What was interpreted ahead, if that was from the present positions and state."""
+        """What was interpreted ahead, if that was from the present positions and state, and within all soft limits."""
         ready = self._prepared
         if ready is None or ready.program is not program or not ready.before.same_as(state):
             return None
         same_way = ready.start == start and ready.block_skip == self._check.block_skip
+        same_way = same_way and not self._check.unreferenced_at_start
         return ready if same_way else None
 
     def finish(self) -> None:

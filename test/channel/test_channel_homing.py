@@ -10,6 +10,7 @@ import pytest
 from machine_support import MILL, MachineBench, machine
 from replay_support import bits, replay
 
+from cnc_ptp.channel.channel_unit import ChannelUnit
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import StatusBit
@@ -88,6 +89,29 @@ def test_without_that_rule_it_moves_them_without_soft_limits() -> None:
     assert "P-ERR-120003" in bench.refusals()[0]
     bench = run("N10 G74 X1\nN10 G0 X-500\nM30", required=False)
     assert "P-ERR-120003" in bench.errors()[0]
+
+
+@pytest.mark.parametrize("prepared", [False, True])
+def test_soft_limits_count_for_a_program_that_was_prepared_before_the_plc_homed(prepared: bool) -> None:
+    text = "N10 G1 X-500 F20000\nN20 X-1\nM30"
+    bench = MachineBench(machine=mill(required=False), end_when_idle=False)
+    channel = bench.units["channel"]
+    assert isinstance(channel, ChannelUnit)
+    if prepared:
+        channel.prepare("far.nc", text)
+    bench.run(0.1)
+    assert all(bench.give(axis, "home").accepted for axis in "xyz")
+    bench.run(25.0)
+    assert all(bench.give(axis, "move_absolute", target=0.0).accepted for axis in "xyz")
+    bench.run(10.0)
+    assert [bench.position(axis) for axis in "xyz"] == [0.0] * 3
+    assert bench.give("channel", "load", program="far.nc", text=text).accepted
+    started = bench.give("channel", "start")
+    assert (started.accepted, started.error_id) == (False, 120003)
+    assert started.message.endswith(
+        "-500 mm lies beyond the negative soft limit -300 mm (P-AXIS-00177); nothing was started"
+    )
+    assert bench.run(0.5).position("x") == 0.0
 
 
 def test_homing_by_the_plc_counts_too() -> None:

@@ -9,7 +9,7 @@ from web_support import MILL, ROOT, site
 
 from cnc_ptp.parameters import machine_text, read_machine
 from cnc_ptp.protocol.blocks import AxisBlock, ChannelOffsets, CommandRecord
-from cnc_ptp.web.faces.offset_table import OffsetTable
+from cnc_ptp.web.faces.offset_table import OffsetTable, below_zero_offset
 from cnc_ptp.web.programs.backplot import HEAD
 
 
@@ -25,6 +25,12 @@ def active(cycle, index=0, x=0.0, *, clamp=0.0, tool=0.0):
     values = [x, 0.0, 0.0], *no_lists, 0, [clamp, 0.0, 0.0], [tool, 0.0, 0.0]
     plain = [1.0] * 3, [False] * 3, False, 0.0, [], False, [1.0, 0, 0, 0, 1.0, 0, 0, 0, 1.0], none
     return ChannelOffsets(cycle, 0, ["X", "Y", "Z"], index, "", *values, *plain)
+
+
+@pytest.mark.parametrize("lacking", ["clamp_offset", "tool_offset"])
+def test_offsets_that_no_channel_sends_are_not_known(lacking):
+    assert below_zero_offset(active(0, clamp=2.0, tool=0.5), "X") == 2.5
+    assert below_zero_offset(replace(active(0), **{lacking: []}), "X") is None
 
 
 def changed(cycle, command, **arguments):

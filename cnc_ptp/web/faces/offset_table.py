@@ -134,6 +134,8 @@ def below_zero_offset(offsets: ChannelOffsets | None, name: str) -> float | None
     if offsets is None or offsets.machine_coordinates or offsets.origin or name not in offsets.axes:
         return None
     place = offsets.axes.index(name)
+    if place >= min(len(offsets.clamp_offset), len(offsets.tool_offset)):  # no channel sends that
+        return None
     return offsets.clamp_offset[place] + offsets.tool_offset[place]
 
 
