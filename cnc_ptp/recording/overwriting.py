@@ -11,14 +11,34 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import machine_files
 
 OVERWRITES = 26117
+MAGIC = b"\x89MCAP0\r\n"
 MACHINE_FILE = "machine_file"
 """The input whose own files must not be overwritten either."""
 
 
 def check_recording(record: str | None, **inputs: str | None) -> None:
-    """Raises CncError 26117 when the recording of a run is one of its inputs, each by its kind: machine_file="…"."""
-    if record is not None and Path(record).exists() and (what := overwritten(record, inputs)):
+    """Raises CncError 26117 when the recording of a run is one of its inputs, each by its kind: machine_file="…".
+
+    As well when it would take the place of a file that is no recording.
+    """
+    if record is None:
+        return
+    if Path(record).exists() and (what := overwritten(record, inputs)):
         raise CncError(OVERWRITES, f"recording {record} would overwrite the {what}", "nothing was started")
+    require_recording(record, "nothing was started")
+
+
+def require_recording(output: str | Path, effect: str) -> None:
+    """Raises CncError 26117 where `output` is a file with contents that is no recording."""
+    with suppress(OSError):  # writing it says why
+        if Path(output).is_file() and first_bytes(Path(output)) not in (b"", MAGIC):
+            raise CncError(OVERWRITES, f"recording {output} would overwrite a file that is no recording", effect)
+
+
+def first_bytes(file: Path) -> bytes:
+    """As many as the mark of a recording has. Raises OSError."""
+    with file.open("rb") as opened:
+        return opened.read(len(MAGIC))
 
 
 def overwritten(output: str, inputs: Mapping[str, str | None]) -> str:

@@ -22,6 +22,7 @@ from cnc_ptp.recording.mcap_file import METADATA, MISSING, RECORD_PREFIX, McapFi
 from cnc_ptp.recording.mcap_index import McapIndex
 from cnc_ptp.recording.new_recording import NOTHING_WRITTEN, folder_beside, in_place_of, not_written
 from cnc_ptp.recording.origin import WITHOUT
+from cnc_ptp.recording.overwriting import require_recording
 from cnc_ptp.recording.parts import NO_FOLDER, PartsFolder, describe_file, information_of, named_files_of, replace_parts
 
 NOTHING_SAVED = 26224
@@ -40,12 +41,13 @@ def recover(source: str | Path, output: str | Path) -> Recovered:
 
     A folder of parts becomes a folder of parts, without those of which nothing can be read. What is there under the
     name of `output` is unchanged until all is written; of a folder its parts are replaced, other files stay. Raises
-    CncError 26001, 26002, 26007 (not written), 26014, 26224 (nothing can be saved); of a folder 26020, and 26001 or
-    26002 when no part can be read.
+    CncError 26001, 26002, 26007 (not written), 26014, 26117, 26224 (nothing can be saved); of a folder 26020, and 26001
+    or 26002 when no part can be read.
     """
     path, new = Path(source), Path(output)
     if not path.is_file() or path.name == FILE:
         return _recover_parts(path, new)
+    require_recording(new, NOTHING_WRITTEN)
     with in_place_of(new) as part:
         recovered = _recover_file(path, part)
         require_something(path, recovered)

@@ -88,6 +88,8 @@ def test_wrong_usage_is_status_2(arguments):
     [
         (["simulate", MILL, "--duration"], "duration"),
         (["run", MILL, "--duration"], "duration"),
+        (["simulate", MILL, "--checkpoints"], "checkpoints"),
+        (["run", MILL, "--checkpoints"], "checkpoints"),
         (["replay", "a.mcap", "--rate"], "rate"),
     ],
 )

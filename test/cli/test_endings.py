@@ -107,6 +107,27 @@ def test_a_recording_does_not_overwrite_what_the_run_is_made_of(name, tmp_path):
         assert path.read_bytes() == before
 
 
+def test_a_recording_takes_the_place_of_no_other_file(tmp_path):
+    own, other = tmp_path / "own.mcap", tmp_path / "other.nc"
+    other.write_text("G01 X1\n")
+    job = [MILL, "--duration", "0.1", "--record"]
+    assert call("simulate", *job, own).exit_code == 0
+    text = f"P-ERR-26117 recording {other} would overwrite a file that is no recording; nothing was "
+    for words, effect in (
+        (["simulate", *job, other], "started"),
+        (["run", *job, other], "started"),
+        (["replay", own, "--override", "50", "-o", other], "started"),
+        (["recover", own, "-o", other], "written"),
+    ):
+        result = call(*words)
+        assert (result.exit_code, result.stderr) == (2, f"{text}{effect}\n")
+        assert other.read_text() == "G01 X1\n"
+    empty = tmp_path / "empty"
+    empty.touch()
+    for file in (own, empty):
+        assert call("simulate", *job, file).exit_code == 0
+
+
 @pytest.mark.parametrize("name", ["simulate", "run"])
 def test_a_recording_does_not_overwrite_files_that_the_machine_file_names(name, tmp_path):
     machine = tmp_path / "m.yaml"

@@ -12,6 +12,7 @@ from cnc_ptp import cli
 from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import CycleTick
 from cnc_ptp.recording.mcap_index import McapIndex
+from cnc_ptp.recording.overwriting import MAGIC
 from cnc_ptp.recording.reader import read_recording
 from cnc_ptp.recording.recovery import recover
 from cnc_ptp.recording.writer import Recording
@@ -91,14 +92,14 @@ def test_a_file_without_messages_of_ros_gives_none(tmp_path):
         channel = writer.register_channel("/note", "json", writer.register_schema("note", "jsonschema", b"{}"))
         writer.add_message(channel, 0, b"{}", 0)
         writer.finish()
-    output.write_text("former")
+    output.write_bytes(MAGIC + b"former")
     result = CliRunner().invoke(cli.main, ["recover", str(path), "-o", str(output)])
     assert result.exit_code == 2
     assert " ".join(result.stderr.split()).startswith(
         f"P-ERR-26224 recording {path}: holds no message that can be saved; at offset "
     )
     assert "/note holds no messages of ROS 2" in result.stderr.replace("\n", " ")
-    assert output.read_text() == "former" and sorted(each.name for each in tmp_path.iterdir()) == [
+    assert output.read_bytes() == MAGIC + b"former" and sorted(each.name for each in tmp_path.iterdir()) == [
         path.name,
         output.name,
     ]

@@ -29,7 +29,7 @@ run_options = option_group(
     click.option("--record", type=click.Path(), help="Write an MCAP recording."),
     click.option(
         "--checkpoints",
-        type=click.FloatRange(min=0.0),
+        type=DURATION,
         default=10.0,
         show_default=True,
         help="Machine time in s between two checkpoints in the recording, from which a replay can begin; 0: none.",
