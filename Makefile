@@ -39,7 +39,7 @@ $(INSTALLED): $(REQUIREMENTS) $(if $(LOCKED),requirements.lock) $(VENV)/.python
 	@rm -f $(VENV)/.requirements $(VENV)/.requirements-locked && touch $@
 
 $(VENV)/.package: $(PACKAGE) $(INTERFACES) $(INSTALLED)
-	@echo "Generating the ROS interfaces, compiling the kernel and installing cnc_ptp into $(VENV) (up to three minutes on two cores) ..."
+	@echo "Generating the ROS interfaces, compiling the kernel and installing cnc_ptp into $(VENV) (up to six minutes on two cores) ..."
 	@$(BIN)/pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps --editable .
 	@touch $@
 
