@@ -2,10 +2,12 @@
 
 from pathlib import Path
 
+import pytest
 from click.testing import CliRunner, Result
 from machine_support import ROOT
 
 from cnc_ptp import cli
+from cnc_ptp.commands.run import what_if
 from cnc_ptp.recording.reader import read_recording
 
 PTP = ROOT / "config" / "ptp.yaml"
@@ -46,11 +48,19 @@ def test_a_change_that_the_machine_refuses_is_status_1(tmp_path: Path) -> None:
         "error: set_override to channel at 0 s is refused: channel channel: set_override refused: percent = 500.0 "
         "is not within 0 ... 150 (P-CHAN-00056); nothing was changed"
     ]
-    other = tmp_path / "other.nc"
-    other.write_text("G01 X50 F2400 Q\n")
-    result = call("replay", path, "--program", other)
-    assert result.exit_code == 1
-    assert result.stderr.startswith(f"error: load to channel at 0 s is refused: {other} line 1 column 15 ")
+
+
+def test_a_program_that_no_channel_can_read_is_refused_before_anything(tmp_path: Path) -> None:
+    run, new = recorded_run(tmp_path), tmp_path / "new.mcap"
+    assert call("replay", run, "--override", 50, "-o", new).exit_code == 0
+    former = new.read_bytes()
+    result = call("replay", run, "--from", 0.5, "--program", tmp_path / "bad.nc", "-o", new)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr.startswith(
+        f"P-ERR-21003 {tmp_path / 'bad.nc'} line 1 column 15 'G01 X50 F2400 Q': 'Q' is not a letter with a number; "
+        "nothing was computed\n"
+    )
+    assert new.read_bytes() == former
 
 
 MILL = ROOT / "config" / "mill.yaml"
@@ -71,9 +81,14 @@ def given_to_channel(path: Path) -> list[tuple[str, bool]]:
     return [(record.command, record.accepted) for record in read_recording(path).commands if record.target == "channel"]
 
 
-def test_without_the_other_program_nothing_is_started(tmp_path: Path) -> None:
+def test_without_the_other_program_nothing_is_started(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Another channel could read it: each has a vocabulary of its own."""
+    monkeypatch.setattr(what_if, "require_syntax", lambda *_: None)
     run, new = recorded_run(tmp_path), tmp_path / "new.mcap"
-    assert call("replay", run, "--from", 0.5, "--program", tmp_path / "bad.nc", "-o", new).exit_code == 1
+    result = call("replay", run, "--from", 0.5, "--program", tmp_path / "bad.nc", "-o", new)
+    assert result.exit_code == 1
+    assert f" s is refused: {tmp_path / 'bad.nc'} line 1 column 15 " in result.stderr
+    assert result.stderr.startswith("error: load to channel at 0.")
     assert given_to_channel(new) == [("reset", True), ("load", False)]
 
 

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import gc
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from itertools import chain, islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from cnc_ptp.channel.program_check import ProgramCheck
 from cnc_ptp.commands.look.diff import check_diff_page, show_difference
 from cnc_ptp.commands.run.progress import RunProgress
 from cnc_ptp.machine.program_files import read_file, read_program
 from cnc_ptp.machine.run_entries import load_arguments, program_search
 from cnc_ptp.machine.wiring import unit_kinds
+from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.plc.scenario import Entry, parse_scenario
 from cnc_ptp.protocol.blocks import CommandRecord
 from cnc_ptp.recording.new_recording import in_place_of
@@ -112,12 +115,26 @@ def refusal_text(record: CommandRecord, cycle_time_ns: int) -> str:
 
 
 def load_of(recorded: RunInputs, program: str | None) -> dict[str, object] | None:
-    """Arguments of `load` for a program file."""
+    """Arguments of `load` for a program file. Raises ProgramError where no channel can read it."""
     if program is None:
         return None
     machine = recorded.required_machine()
     text, files = read_program(program, program_search(machine))
+    require_syntax(machine, text, program, files)
     return load_arguments(program, text, files)
+
+
+def require_syntax(machine: MachineParameters, text: str, program: str, files: Mapping[str, str]) -> None:
+    """Raises the ProgramError of the first channel if every one has one: each has a vocabulary of its own."""
+    faults: list[ProgramError] = []
+    for channel in machine.channels.values():
+        try:
+            ProgramCheck(channel, machine.axes, machine.spindles).parse(text, program, files)
+        except ProgramError as fault:
+            fault.effect = "nothing was computed"
+            faults.append(fault)
+    if faults and len(faults) == len(machine.channels):
+        raise faults[0]
 
 
 def entries_of(recorded: RunInputs, commands: str | None) -> list[Entry]:
