@@ -43,15 +43,15 @@ class UnitView:
     """Of a program, s; below 0 if it is not known."""
 
 
-def view_of(name: str, kind: str, block: Any, *, rotary: bool = False) -> UnitView:
-    """`block`: AxisBlock, SpindleBlock or ChannelBlock, or its message; `rotary` for an axis in degrees."""
+def view_of(name: str, kind: str, block: Any, *, rotary: bool = False, stamp: float = 0.0) -> UnitView:
+    """`block`: AxisBlock, SpindleBlock or ChannelBlock; `rotary` for an axis in degrees; `stamp` of its message, s."""
     common: dict[str, Any] = {
         "name": name,
         "kind": kind,
         "override": block.override_percent[-1],
         "error_id": block.error_id[-1],
         "cycle": block.first_cycle + block.count,
-        "stamp": _stamp(block),
+        "stamp": stamp,
     }
     return VIEWS[kind](block, common, "deg" if rotary else "mm")
 
@@ -110,9 +110,3 @@ def _channel_view(block: Any, common: dict[str, Any], unit: str) -> UnitView:
 
 VIEWS = {"channel": _channel_view, "axis": _axis_view, "spindle": _spindle_view}
 """By kind of unit, in the order in which people look at them."""
-
-
-def _stamp(block: Any) -> float:
-    """Of the message; 0 for a block that has none."""
-    header = getattr(block, "header", None)
-    return 0.0 if header is None else float(header.stamp.sec) + header.stamp.nanosec * 1e-9

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Collection, Mapping
-from dataclasses import replace
 from typing import Any
 
 from rclpy.qos import DurabilityPolicy, QoSProfile
@@ -84,7 +83,7 @@ class LatestBlocks:
         if not isinstance(newest, bytes):
             return view_of(unit, kind, newest, rotary=rotary)
         block = codec_of(BLOCK_CLASSES[kind]).decode(newest)
-        return replace(view_of(unit, kind, block, rotary=rotary), stamp=head_of(newest)[0] * 1e-9)
+        return view_of(unit, kind, block, rotary=rotary, stamp=head_of(newest)[0] * 1e-9)
 
     def views(self) -> list[UnitView]:
         """The blocks of the units that have published: channels, axes, spindles."""
