@@ -7,11 +7,12 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from mcap.writer import MCAP0_MAGIC
+
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import machine_files
 
 OVERWRITES = 26117
-MAGIC = b"\x89MCAP0\r\n"
 MACHINE_FILE = "machine_file"
 """The input whose own files must not be overwritten either."""
 
@@ -31,14 +32,14 @@ def check_recording(record: str | None, **inputs: str | None) -> None:
 def require_recording(output: str | Path, effect: str) -> None:
     """Raises CncError 26117 where `output` is a file with contents that is no recording."""
     with suppress(OSError):  # writing it says why
-        if Path(output).is_file() and first_bytes(Path(output)) not in (b"", MAGIC):
+        if Path(output).is_file() and first_bytes(Path(output)) not in (b"", MCAP0_MAGIC):
             raise CncError(OVERWRITES, f"recording {output} would overwrite a file that is no recording", effect)
 
 
 def first_bytes(file: Path) -> bytes:
     """As many as the mark of a recording has. Raises OSError."""
     with file.open("rb") as opened:
-        return opened.read(len(MAGIC))
+        return opened.read(len(MCAP0_MAGIC))
 
 
 def overwritten(output: str, inputs: Mapping[str, str | None]) -> str:

@@ -3,6 +3,7 @@
 import pytest
 from click.testing import CliRunner
 from machine_support import ROOT
+from mcap.writer import MCAP0_MAGIC
 from recording_support import MACHINE
 from rosbags.rosbag2 import Reader
 from small_disk import read_only, small_disk
@@ -12,7 +13,6 @@ from cnc_ptp.client import Machine
 from cnc_ptp.commands.output_file import write_output
 from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import CycleTick
-from cnc_ptp.recording.overwriting import MAGIC
 from cnc_ptp.recording.reader import read_recording
 from cnc_ptp.recording.recovery import recover
 from cnc_ptp.recording.settings import Settings, Split
@@ -138,12 +138,12 @@ def test_a_full_disk_leaves_what_was_recovered_before(disk, tmp_path):
     source, output = tmp_path / "run.mcap", disk / "saved.mcap"
     with Recording(source, MACHINE) as file:
         ticks(file, range(0, 2000, 10))
-    output.write_bytes(MAGIC + b"former")
+    output.write_bytes(MCAP0_MAGIC + b"former")
     leave(disk, 0)
     assert refusal(recover, source, output) == (
         f"P-ERR-26007 recording {output}: cannot be written: {NO_SPACE}; nothing was written"
     )
-    assert output.read_bytes() == MAGIC + b"former" and len([*disk.iterdir()]) == 2
+    assert output.read_bytes() == MCAP0_MAGIC + b"former" and len([*disk.iterdir()]) == 2
 
 
 def simulated(path, *options):
@@ -161,12 +161,12 @@ def told(*words):
 def test_a_full_disk_leaves_what_a_replay_has_recorded_before(disk, tmp_path):
     run, output = tmp_path / "run.mcap", disk / "new.mcap"
     simulated(run)
-    output.write_bytes(MAGIC + b"former")
+    output.write_bytes(MCAP0_MAGIC + b"former")
     leave(disk, 8)
     assert told("replay", run, "--set", "x.getriebe.0.kv=8000", "-o", output) == (
         f"P-ERR-26007 recording {output}: cannot be written: {NO_SPACE}; nothing was written"
     )
-    assert output.read_bytes() == MAGIC + b"former" and len([*disk.iterdir()]) == 2
+    assert output.read_bytes() == MCAP0_MAGIC + b"former" and len([*disk.iterdir()]) == 2
 
 
 def test_a_full_disk_without_a_former_file_leaves_what_was_computed(large_disk, tmp_path):

@@ -4,7 +4,7 @@ import pytest
 from click.testing import CliRunner
 from long_support import long
 from mcap.reader import make_reader
-from mcap.writer import Writer
+from mcap.writer import MCAP0_MAGIC, Writer
 from recording_support import MACHINE, smooth_run
 
 import cnc_ptp.recording
@@ -12,7 +12,6 @@ from cnc_ptp import cli
 from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import CycleTick
 from cnc_ptp.recording.mcap_index import McapIndex
-from cnc_ptp.recording.overwriting import MAGIC
 from cnc_ptp.recording.reader import read_recording
 from cnc_ptp.recording.recovery import recover
 from cnc_ptp.recording.writer import Recording
@@ -92,14 +91,14 @@ def test_a_file_without_messages_of_ros_gives_none(tmp_path):
         channel = writer.register_channel("/note", "json", writer.register_schema("note", "jsonschema", b"{}"))
         writer.add_message(channel, 0, b"{}", 0)
         writer.finish()
-    output.write_bytes(MAGIC + b"former")
+    output.write_bytes(MCAP0_MAGIC + b"former")
     result = CliRunner().invoke(cli.main, ["recover", str(path), "-o", str(output)])
     assert result.exit_code == 2
     assert " ".join(result.stderr.split()).startswith(
         f"P-ERR-26224 recording {path}: holds no message that can be saved; at offset "
     )
     assert "/note holds no messages of ROS 2" in result.stderr.replace("\n", " ")
-    assert output.read_bytes() == MAGIC + b"former" and sorted(each.name for each in tmp_path.iterdir()) == [
+    assert output.read_bytes() == MCAP0_MAGIC + b"former" and sorted(each.name for each in tmp_path.iterdir()) == [
         path.name,
         output.name,
     ]

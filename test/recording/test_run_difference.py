@@ -5,11 +5,11 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 from machine_support import ROOT
+from mcap.writer import MCAP0_MAGIC
 
 from cnc_ptp.cli import main
 from cnc_ptp.errors import CncError
 from cnc_ptp.recording.mcap_index import NOT_CLOSED
-from cnc_ptp.recording.overwriting import MAGIC
 from cnc_ptp.recording.reader import read_recording
 from cnc_ptp.recording.recovery import recover
 from cnc_ptp.recording.run_difference import difference
@@ -125,6 +125,6 @@ def test_a_recovered_folder_says_which_parts_it_lacks(parts: Path, tmp_path: Pat
 
 def test_a_refused_change_leaves_the_former_output(whole: Path, tmp_path: Path) -> None:
     output = tmp_path / "good.mcap"
-    output.write_bytes(MAGIC + b"good")
+    output.write_bytes(MCAP0_MAGIC + b"good")
     result = call("replay", whole, "--from", 1, "--set", "machine.cycle_time_us=2000", "-o", output)
-    assert "P-ERR-26156 " in words(result) and output.read_bytes() == MAGIC + b"good"
+    assert "P-ERR-26156 " in words(result) and output.read_bytes() == MCAP0_MAGIC + b"good"
