@@ -63,7 +63,8 @@ SHORT := $(if $(LONG),,-m "not long")
 test: setup
 	$(BIN)/pytest -n 2 --dist worksteal --ignore test/graph $(SHORT)
 	CNC_PTP_PURE=1 $(BIN)/pytest -n 2 -m interpreted $$(grep -rl --include='*.py' 'mark.interpreted' test)
-	$(BIN)/pytest test/graph $(SHORT)
+	# -n 1: a worker in which a test hangs is replaced.
+	$(BIN)/pytest -n 1 test/graph $(SHORT)
 
 lint: setup
 	$(BIN)/ruff check .

@@ -73,6 +73,8 @@ STALE = 0.2
 """Seconds in which it gets what has waited for it."""
 QUIET = 0.2
 """Seconds without a message after which a recorder that is to end has seen everything."""
+ALONE = 60.0
+"""Seconds for which units may compute without a tick: without a clock they stop on their ramps."""
 LOOK_PERIOD = 0.05
 """Seconds between two looks for ticks and blocks."""
 
@@ -117,6 +119,7 @@ class RecorderNode(PollingNode):
         self._path = path
         self._cycle_ns = machine.cycle_time_us * 1000
         self._block_cycles = machine.block_cycles
+        self._most_ahead = round(ALONE * 1e6 / machine.cycle_time_us)
         self._free_run = False
         self._tick_ns = 0
         self._last_tick = -1
@@ -279,6 +282,9 @@ class RecorderNode(PollingNode):
         if unit == PLC:
             self._last_plc = data
         stamp_ns, first_cycle, count = head_of(data)
+        if first_cycle > self._last_tick + self._most_ahead:
+            where = f"its first cycle is {first_cycle}, and the newest tick {self._last_tick}"
+            raise unreadable(block_class.__name__, data, where)
         if self._is_new(unit, stamp_ns, first_cycle, count):
             for sink in self._sinks:
                 sink.encoded_block(unit, block_class, data)

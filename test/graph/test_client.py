@@ -15,6 +15,7 @@ from action_msgs.msg import GoalStatus
 from client_support import Client
 from diagnostic_msgs.msg import DiagnosticArray
 from graph_support import MILL, Running, run, small_machine, verified, wait_for_handler
+from mcap.writer import MCAP0_MAGIC
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParameters, SetParametersAtomically
 from sensor_msgs.msg import JointState
@@ -464,7 +465,9 @@ def test_the_table_size_of_friction_compensation_is_fixed_after_start_up(client)
         )
 
 
-@pytest.mark.parametrize(("options", "content"), [([], b"of yesterday"), (["--composed"], None)], ids=str)
+@pytest.mark.parametrize(
+    ("options", "content"), [([], MCAP0_MAGIC + b"of yesterday"), (["--composed"], None)], ids=["graph", "composed"]
+)
 def test_a_second_run_on_the_domain_is_refused(client, ros_domain, machine, options, content, tmp_path):
     """It leaves the file that it was to write as it is, or does not make it."""
     file = tmp_path / "second.mcap"

@@ -183,6 +183,27 @@ def test_blocks_behind_the_stop_of_a_drive_are_not_recorded(around, tmp_path):
     assert read_recording(path).states["/x/state"]["cycle"].tolist() == list(range(10))
 
 
+@pytest.mark.motion_unchecked("random numbers")
+def test_a_block_that_is_far_ahead_of_the_clock_costs_none_of_those_that_follow(around, tmp_path):
+    path = tmp_path / "a.mcap"
+    outside, recorder, spin_until = around(lambda: RecorderNode(read_machine(str(PTP)), str(path), PTP.read_text()))
+    blocks = Blocks(1)
+    axis = outside.create_publisher(msg.AxisBlock, block_topic("x"), BLOCKS)
+    spin_until(lambda: outside.ticks.get_subscription_count() and axis.get_subscription_count())
+    told = []
+    recorder.tell_unreadable = told.append
+    outside.ticks.publish(msg.CycleTick(first_cycle=0, count=10))
+    for first_cycle in (0, 60_010, 10):
+        axis.publish(encode_block(blocks.axis(first_cycle), STAMPS))
+    spin_until(lambda: recorder._next_cycle["x"] == 20)
+    recorder.destroy_node()
+    assert read_recording(path).states["/x/state"]["cycle"].tolist() == list(range(20))
+    (text,) = told
+    assert text.startswith("recorder: topic x/block: ") and text.endswith(
+        " bytes are no message AxisBlock: its first cycle is 60010, and the newest tick 0; they are ignored"
+    )
+
+
 def test_states_that_no_unit_has_sent_are_left_out(around, tmp_path):
     """A foreign message must not end the recorder: without it everything stops."""
     path = tmp_path / "a.mcap"
