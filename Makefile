@@ -57,13 +57,12 @@ demo: setup
 	@echo "The report is runs/demo.html. Pages of this run in a browser, http://localhost:8080: make demo LOOK=1, or $(BIN)/cnc_ptp web runs/demo.mcap"
 	$(if $(LOOK),$(BIN)/cnc_ptp web runs/demo.mcap)
 
-# Without LONG=1, tests that are marked as long are left out.
+# Without LONG=1, tests that are marked as long are left out. -n 1: a process in which a test hangs is replaced.
 SHORT := $(if $(LONG),,-m "not long")
 
 test: setup
 	$(BIN)/pytest -n 2 --dist worksteal --ignore test/graph $(SHORT)
 	CNC_PTP_PURE=1 $(BIN)/pytest -n 2 -m interpreted $$(grep -rl --include='*.py' 'mark.interpreted' test)
-	# -n 1: a worker in which a test hangs is replaced.
 	$(BIN)/pytest -n 1 test/graph $(SHORT)
 
 lint: setup
