@@ -23,7 +23,7 @@ from cnc_ptp.nodes.nc_channel import ChannelNode
 from cnc_ptp.nodes.plc_bridge import PlcBridgeNode
 from cnc_ptp.nodes.recorder import RecorderNode
 from cnc_ptp.nodes.spindle import SpindleNode
-from cnc_ptp.nodes.supervisor import STOP_TIMEOUT, RunOptions, observers_of, only_run
+from cnc_ptp.nodes.supervisor import STOP_TIMEOUT, RunOptions, close_recordings, observers_of, only_run
 from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters, machine_text
 from cnc_ptp.protocol.unit import PLC
@@ -99,7 +99,9 @@ def _run(
             nodes, done=lambda: done() or stopped(end, nodes, note=note_ending), wait=clock.wait_time, after=after
         )
     except CncError as error:
-        failures.append(f"{error}; the run ends")
+        failures.append(str(error) if clock.done else f"{error}; the run ends")
+    if recorder is not None and recorder.failure is not None:
+        failures += close_recordings(options, monitor)
     end.restore()
     return monitor, failures
 

@@ -301,11 +301,18 @@ class Supervisor:
         if status is not None and not self._dead & {RECORDER, SERVER}:
             how = f"node '{RECORDER}' (process {recorder.pid}) {how_ended(status)} at the end of the run"
             self.failures.append(f"P-ERR-{NODE_DIED} {how}; its recording goes as far as it was written")
-        for recording in filter(None, (self._options.record, self._monitor.on_demand)):
-            try:
-                close_cut_recording(recording)
-            except CncError as error:
-                self.failures.append(str(error))
+        self.failures += close_recordings(self._options, self._monitor)
+
+
+def close_recordings(options: RunOptions, monitor: RunMonitor) -> list[str]:
+    """Closes what a recorder has left open; texts of those that cannot be closed."""
+    failures = []
+    for recording in filter(None, (options.record, monitor.on_demand)):
+        try:
+            close_cut_recording(recording)
+        except CncError as error:
+            failures.append(str(error))
+    return failures
 
 
 def command_lines(

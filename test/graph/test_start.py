@@ -8,8 +8,12 @@ import sys
 
 import pytest
 from graph_support import TIMEOUT, Running, command, one_axis_machine, run, verified
+from mcap.writer import MCAP0_MAGIC
 
+from cnc_ptp.commands.run.run import run as run_machine
+from cnc_ptp.errors import CncError
 from cnc_ptp.nodes.process import PROFILE, RANGE, set_environment
+from cnc_ptp.recording.on_demand import OnDemand
 from cnc_ptp.recording.reader import read_recording
 
 SCENARIO = "- {at: 0.0, to: x, do: move_absolute, target: 5000.0, velocity: 100.0}\n"
@@ -77,6 +81,28 @@ def test_full_disk(one_axis):
 def test_full_disk_in_a_composed_run(one_axis):
     done = run("run", one_axis, "--composed", "--record", "/dev/full", expect=1)
     assert "failed: P-ERR-26007 recording /dev/full: cannot be written" in done.stdout
+
+
+def test_a_recording_that_a_composed_run_cannot_close_is_closed_behind_its_last_chunk(
+    one_axis, tmp_path, monkeypatch, capfd
+):
+    recording = tmp_path / "run.mcap"
+
+    def close(of: OnDemand) -> None:
+        raise CncError(26007, "recording run.mcap: cannot be written: No space left on device", "its end is missing")
+
+    monkeypatch.setattr(OnDemand, "close", close)
+    scenario = str(tmp_path / "move.yaml")
+    status = run_machine(str(one_axis), None, scenario, 2.0, str(recording), free_run=True, composed=True)
+    output = capfd.readouterr().out
+    assert status == 1
+    assert (
+        "failed: P-ERR-26007 recording run.mcap: cannot be written: No space left on device; its end is missing\n"
+        in output
+    )
+    recorded = read_recording(recording)
+    assert recording.read_bytes().endswith(MCAP0_MAGIC)
+    assert "without having been closed" in recorded.missing and recorded.last_cycle > 900
 
 
 @pytest.mark.parametrize("composed", [(), ("--composed",)])
