@@ -6,7 +6,7 @@ from itertools import count
 import pytest
 
 from cnc_ptp import msg
-from cnc_ptp.nodes.bridge.jog_topics import PATIENCE, JogTopics
+from cnc_ptp.nodes.bridge.jog_topics import KNOWN_CLIENTS, PATIENCE, JogTopics
 
 SILENT = (26134, "plc: no message on /x/jog for 200 ms; the jog of x ends")
 SECOND = (26144, "plc: /x/jog has a second client '{}'; it is ignored while the first one jogs x")
@@ -91,3 +91,14 @@ def test_nothing_is_jogged_in_free_run(jogs):
     assert jogs.warnings == [FREE_RUN]
     assert jogs.topics.fallen_silent(9.0) == []
     assert jogs.heard("x", 5.0, 10.0) == 5.0
+
+
+def test_clients_with_ever_new_names_take_no_more_room(jogs):
+    for n in range(KNOWN_CLIENTS + 100):
+        assert jogs.heard("x", 5.0, n, client=f"made up {n}") == 5.0
+        assert jogs.heard("x", 0.0, n, client=f"made up {n}") == 0.0
+    jogs.heard("x", 5.0, 2000.0)
+    for n in range(KNOWN_CLIENTS + 100):
+        jogs.heard("x", 9.0, 2000.1, client=f"made up {n}")
+    assert len(jogs.warnings) == len(jogs.topics._sequence) == KNOWN_CLIENTS
+    assert jogs.heard("x", 0.0, 2000.1) == 0.0, "the client that jogs is known"

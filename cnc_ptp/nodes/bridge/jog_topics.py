@@ -15,6 +15,8 @@ SECOND_JOG = 26144
 JOG_IN_FREE_RUN = 26145
 PATIENCE = 0.2
 """Seconds without a message after which a jog ends."""
+KNOWN_CLIENTS = 1000
+"""Of whom the numbers of messages are known, and who are told that they are ignored: names may be made up."""
 SILENCE = f"{PATIENCE * 1000.0:.0f} ms"
 
 
@@ -49,7 +51,7 @@ class JogTopics:
             return None
         if not is_newer(message.sequence, self._sequence.get((axis, client), 0)):
             return None
-        self._sequence[axis, client] = message.sequence
+        self._note_sequence(axis, client, message.sequence)
         self._client[axis] = client
         velocity = message.velocity if message.valid and math.isfinite(message.velocity) else 0.0
         if velocity:
@@ -70,8 +72,14 @@ class JogTopics:
     def _is_foreign(self, axis: str, client: str, now: float) -> bool:
         return self._silence.is_heard(axis, now) and client != self._client[axis]
 
+    def _note_sequence(self, axis: str, client: str, sequence: int) -> None:
+        self._sequence.pop((axis, client), None)
+        self._sequence[axis, client] = sequence
+        if len(self._sequence) > KNOWN_CLIENTS:
+            del self._sequence[next(iter(self._sequence))]  # the one that was heard longest ago
+
     def _report(self, error_id: int, axis: str, client: str, text: str) -> None:
-        if (error_id, axis, client) not in self._reported:
+        if (error_id, axis, client) not in self._reported and len(self._reported) < KNOWN_CLIENTS:
             self._reported.add((error_id, axis, client))
             self._warn(error_id, text)
 
