@@ -184,7 +184,7 @@ def _ids(index: McapIndex, types: Collection[str]) -> set[int]:
 
 def _with(ids: set[int], chunks: Collection[ChunkPlace]) -> list[ChunkPlace]:
     """The chunks that may hold messages of them."""
-    return [chunk for chunk in chunks if not chunk.indexes or not ids.isdisjoint(chunk.indexes)]
+    return [chunk for chunk in chunks if chunk.may_hold(ids)]
 
 
 def _feed(reader: Reader, index: McapIndex, ids: set[int], chunks: Collection[ChunkPlace]) -> None:

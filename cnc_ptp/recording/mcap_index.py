@@ -32,17 +32,21 @@ INDEX_OFFSET = struct.Struct("<HQ")
 SUMMARY_CRC = struct.Struct("<I")
 NOT_CLOSED = "the file was not closed; what was recorded after its last whole chunk is missing"
 """A channel and the offset of its message index."""
-NO_INDEX: Mapping[int, int] = {}
 
 
 class ChunkPlace(NamedTuple):
-    """A chunk of a file: log times in ns, and where the message indexes of its channels lie (none: not known)."""
+    """A chunk of a file: log times in ns, its channels, and where their message indexes lie (none: not known)."""
 
     first_ns: int
     last_ns: int
     offset: int
     length: int
+    channels: Collection[int]
     indexes: Mapping[int, int]
+
+    def may_hold(self, channels: Collection[int]) -> bool:
+        """Messages of some of them; true where its channels are not known."""
+        return not self.channels or any(channel in self.channels for channel in channels)
 
 
 class McapIndex(RecordReader):
@@ -182,7 +186,8 @@ class McapIndex(RecordReader):
         try:
             first, last, offset, length, size = CHUNK_INDEX.unpack_from(record.body)
             table = record.body[CHUNK_INDEX.size : CHUNK_INDEX.size + size]
-            return ChunkPlace(first, last, offset, length, dict(INDEX_OFFSET.iter_unpack(table)))
+            indexes = dict(INDEX_OFFSET.iter_unpack(table))
+            return ChunkPlace(first, last, offset, length, indexes.keys(), indexes)
         except struct.error as error:
             raise self.corrupt(record.offset, f"the chunk index cannot be read: {error}") from error
 
@@ -199,8 +204,10 @@ class McapIndex(RecordReader):
                 self._has_loose = True
             elif record.opcode == Opcode.CHUNK:
                 first, last = struct.unpack_from("<QQ", record.body)
-                self.chunks.append(ChunkPlace(first, last, record.offset, len(record.body), NO_INDEX))
-                for item in self.in_chunk(record):
+                items = [*self.in_chunk(record)]
+                channels = {item.channel_id for item in items if isinstance(item, MessageRun)}
+                self.chunks.append(ChunkPlace(first, last, record.offset, len(record.body), channels, {}))
+                for item in items:
                     self._count(item)
 
     def _summary_records(self, start: int) -> Iterator[RawRecord]:

@@ -12,6 +12,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from importlib import import_module
 from itertools import chain
+from math import nan
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
@@ -24,6 +25,7 @@ from cnc_ptp.recording.mcap_index import ChunkPlace, McapIndex
 from cnc_ptp.recording.message_fields import Column, MessageFields
 from cnc_ptp.recording.origin import notes_of
 from cnc_ptp.recording.parts import files_of
+from cnc_ptp.recording.reader import STATE_TYPES
 from cnc_ptp.recording.selection import NOT_RECORDED, asked_time, nearest
 from cnc_ptp.wire.schemas import full_name
 
@@ -160,6 +162,12 @@ class OpenRecording:
         first, last = ((time - self.start_ns) * 1e-9 for time in self._span(topic))
         return first, last
 
+    def recorded_span(self) -> tuple[float, float]:
+        """First and last time of the states of all units, s; of all topics where there are none. NaN without any."""
+        states = [topic for topic, info in self.topics.items() if info.type_name in STATE_TYPES]
+        spans = [self.span(topic) for topic in states or self.topics]
+        return min((first for first, _ in spans), default=nan), max((last for _, last in spans), default=nan)
+
     def close(self) -> None:
         self._workers.shutdown()
         for file in self._files:
@@ -243,7 +251,7 @@ class OpenRecording:
                 for file in self._files
                 if (ids := file.ids_of(topic))
                 for chunk in file.chunks
-                if not chunk.indexes or not ids.isdisjoint(chunk.indexes)
+                if chunk.may_hold(ids)
             ]
             self._chunks[topic] = sorted(found, key=lambda place: place[1].first_ns)
         return self._chunks[topic]

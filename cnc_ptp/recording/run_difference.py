@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
-from math import nan
+from math import isnan
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -50,15 +50,20 @@ class RunDifference(NamedTuple):
 
 
 def difference(
-    first: str | Path, second: str | Path, begin: float | None = None, end: float | None = None
+    first: str | Path,
+    second: str | Path,
+    begin: float | None = None,
+    end: float | None = None,
+    names: tuple[str, str] | None = None,
 ) -> RunDifference:
     """In the time that both have, at most from `begin` to `end` (s).
 
-    Raises CncError 26001 to 26003, 26016, 26017 (no recording of cnc_ptp), 26022 (nothing in common), 26158 (of
-    different machines).
+    `names`: of both in notes and errors; None: those of the files. Raises CncError 26001 to 26003, 26016, 26017
+    (no recording of cnc_ptp), 26022 (nothing in common), 26158 (of different machines).
     """
     with ExitStack() as files:
         pair = [files.enter_context(OpenRecording(path)) for path in (first, second)]
+        shown = names or (str(first), str(second))
         machine = same_machine(*pair)
         cycle_time = machine.cycle_time_us * 1e-6
         rows: list[FieldDifference] = []
@@ -74,31 +79,26 @@ def difference(
             if unit in machine.channels:
                 times[unit] = program_times(pair, unit, spans[-1][0], end, cycle_time)
         if not rows:
-            times_of = " and ".join(f"{file.path} {span_text(file, machine)}" for file in pair)
+            times_of = " and ".join(f"{name} {span_text(file)}" for name, file in zip(shown, pair, strict=True))
             reason = f"the recordings have no cycle in common{asked_part(begin, end)}: {times_of}"
             raise CncError(NOT_COMPARABLE, reason, "nothing was compared")
         start, last = min(span[0] for span in spans), max(span[1] for span in spans)
-        return RunDifference(rows, times, start, last, cycle_time, [*notes_of_both(pair, machine, end)])
+        return RunDifference(rows, times, start, last, cycle_time, [*notes_of_both(pair, shown, cycle_time, end)])
 
 
-def notes_of_both(pair: Sequence[OpenRecording], machine: MachineParameters, end: float | None) -> Iterator[str]:
-    yield from (f"{file.path}: {file.missing}" for file in pair if file.missing)
-    ends = [recorded_span(file, machine)[1] for file in pair]
-    if end is None and abs(ends[0] - ends[1]) > machine.cycle_time_us * 0.5e-6:
-        texts = (f"{file.path} ends at {last:g} s" for file, last in zip(pair, ends, strict=True))
+def notes_of_both(
+    pair: Sequence[OpenRecording], names: Sequence[str], cycle_time: float, end: float | None
+) -> Iterator[str]:
+    yield from (f"{name}: {file.missing}" for name, file in zip(names, pair, strict=True) if file.missing)
+    ends = [file.recorded_span()[1] for file in pair]
+    if end is None and abs(ends[0] - ends[1]) > cycle_time * 0.5:
+        texts = (f"{name} ends at {last:g} s" for name, last in zip(names, ends, strict=True))
         yield f"{', '.join(texts)}: what only one has was not compared"
 
 
-def recorded_span(file: OpenRecording, machine: MachineParameters) -> tuple[float, float]:
-    """From the first to the last state of all units, s; NaN without any."""
-    topics = [topic for unit in fields_of(machine) if (topic := f"/{unit}/state") in file.topics]
-    spans = [file.span(topic) for topic in topics]
-    return min((first for first, _ in spans), default=nan), max((last for _, last in spans), default=nan)
-
-
-def span_text(file: OpenRecording, machine: MachineParameters) -> str:
-    first, last = recorded_span(file, machine)
-    return f"covers {first:g} s to {last:g} s"
+def span_text(file: OpenRecording) -> str:
+    first, last = file.recorded_span()
+    return "holds no states" if isnan(first) else f"covers {first:g} s to {last:g} s"
 
 
 def asked_part(begin: float | None, end: float | None) -> str:

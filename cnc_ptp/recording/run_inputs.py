@@ -177,11 +177,11 @@ class RunInputs:
         return self._attachments[name].index.attached(name) if name in self._attachments else b""
 
     def _end(self) -> int:
-        """By the time of the last message. One altered number must not make it endless, so others have to confirm it:
+        """By the time of the last state. One altered number must not make it endless, so others have to confirm it:
 
         the last tick, or the number of cycles that a unit recorded.
         """
-        times = [chunk.last_ns for part in self._parts for chunk in part.index.chunks]
+        times = [chunk.last_ns for part in self._parts for chunk in part.state_chunks()]
         states: Counter[str] = Counter()
         for part in self._parts:
             states.update(dict(part.state_counts()))
@@ -218,6 +218,10 @@ class _Part:
         except Exception as error:  # whatever the generated decoder raises
             raise self.index.corrupt(0, f"the commands cannot be read: {error!r}") from error
 
+    def state_chunks(self) -> list[ChunkPlace]:
+        """Those that may have states."""
+        return self._chunks({id for id in self.index.channels if self._type_of(id) in STATE_TYPES})
+
     def state_counts(self) -> Iterator[tuple[str, int]]:
         """Topics of states and the numbers of their messages."""
         for id, count in self.index.counts.items():
@@ -252,9 +256,5 @@ class _Part:
 
     def _chunks(self, channels: Collection[int]) -> list[ChunkPlace]:
         """Those that may have messages of some channels, in the order of their beginnings."""
-        found = [
-            chunk
-            for chunk in self.index.chunks
-            if channels and (not chunk.indexes or not chunk.indexes.keys().isdisjoint(channels))
-        ]
+        found = [chunk for chunk in self.index.chunks if channels and chunk.may_hold(channels)]
         return sorted(found, key=lambda chunk: chunk.first_ns)

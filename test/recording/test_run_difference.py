@@ -9,7 +9,7 @@ from mcap.writer import MCAP0_MAGIC
 
 from cnc_ptp.cli import main
 from cnc_ptp.errors import CncError
-from cnc_ptp.recording.mcap_index import NOT_CLOSED
+from cnc_ptp.recording.mcap_index import NOT_CLOSED, McapIndex
 from cnc_ptp.recording.reader import read_recording
 from cnc_ptp.recording.recovery import recover
 from cnc_ptp.recording.run_difference import difference
@@ -75,6 +75,47 @@ def test_a_cut_or_shorter_file_is_named(whole: Path, tmp_path: Path) -> None:
         f"note: {whole} ends at 2.999 s, {short} ends at 1.999 s: what only one has was not compared",
         EQUAL,
     ]
+
+
+def test_a_cut_file_has_one_end(whole: Path, tmp_path: Path) -> None:
+    """Of its last second only the ticks are whole: no state of it is there."""
+    index = McapIndex(whole)
+    [ticks] = [chunk for chunk in index.chunks if index.ids_of("/clock/tick") <= set(chunk.channels)][2:]
+    index.close()
+    cut, page, second = tmp_path / "cut.mcap", tmp_path / "a.html", "0 s to 1.999 s"
+    cut.write_bytes(whole.read_bytes()[: ticks.offset + ticks.length])
+    assert list(difference(whole, cut).notes) == [
+        f"{cut}: {NOT_CLOSED}",
+        f"{whole} ends at 2.999 s, {cut} ends at 1.999 s: what only one has was not compared",
+    ]
+    assert words(call("diff", cut, cut, "--from", 2)) == (
+        f"P-ERR-26022 the recordings have no cycle in common from 2 s to the end: {cut} covers {second} and "
+        f"{cut} covers {second}; nothing was compared"
+    )
+    assert words(call("report", cut, "--from", 2, "-o", page)) == (
+        f"P-ERR-26011 recording {cut}: nothing from 2 s to the end, it covers {second}; nothing was drawn"
+    )
+    assert words(call("export", cut, "--topic", "x/state", "--from", 2, "-o", tmp_path / "x.csv")) == (
+        f"P-ERR-26011 recording {cut}: holds nothing of /x/state from 2 s to the end, it covers {second}; nothing was read"
+    )
+    assert words(call("replay", cut, "--from", 2.5)) == (
+        "P-ERR-26154 --from 2.5 is not within the recorded time 0 ... 2 s; nothing was computed"
+    )
+    assert words(call("replay", cut, "--from", 2)) == (
+        f"P-ERR-26022 the recordings have no cycle in common: {cut} covers {second} and changed holds no states; "
+        "nothing was compared"
+    )
+    lines = call("replay", cut, "--from", 1, "--to", 3).output.splitlines()
+    assert "compared from 1 s to 1.999 s" in lines and f"note: {cut}: {NOT_CLOSED}" in lines
+
+
+def test_notes_and_errors_name_a_run_as_they_are_told(whole: Path, parts: Path) -> None:
+    part, names = parts / "run_0.mcap", ("run", "changed")
+    assert difference(whole, part, names=names).notes == [
+        "run ends at 2.999 s, changed ends at 0.999 s: what only one has was not compared"
+    ]
+    with pytest.raises(CncError, match=r"run covers 0 s to 2\.999 s and changed covers 0 s to 0\.999 s; nothing was"):
+        difference(whole, part, begin=1, names=names)
 
 
 def test_a_shorter_what_if_is_compared_to_its_end(whole: Path) -> None:

@@ -21,7 +21,7 @@ WIDTH = 100
 def diff(first: str, second: str, output: str | None, begin: float | None = None, end: float | None = None) -> int:
     """Prints where the runs part; `output`: a page of both."""
     check_diff_page(output, recording=first, second_recording=second)
-    show_difference(first, second, output, (Path(first).name, Path(second).name), begin, end)
+    show_difference(first, second, output, (first, second), begin, end)
     return 0
 
 
@@ -39,14 +39,15 @@ def show_difference(
     begin: float | None = None,
     end: float | None = None,
 ) -> None:
-    """`names` of the runs on the page. Raises CncError as difference, and 26021 for a page of too long runs."""
-    found = difference(first, second, begin, end)
+    """`names` of the runs. Raises CncError as difference, and 26021 for a page of too long runs."""
+    found = difference(first, second, begin, end, names)
     print_difference(found)
     if page is not None:
         from cnc_ptp.plots.comparison import comparison_page
 
         pair = [selected(read_own(path, found.begin, end), begin=found.begin, end=end) for path in (first, second)]
-        write_output(page, comparison_page(*pair, align=RUN, names=names))
+        on_page = (Path(names[0]).name, Path(names[1]).name)
+        write_output(page, comparison_page(*pair, align=RUN, names=on_page))
         print(f"{page}: {Path(page).stat().st_size / 1e6:.1f} MB")
 
 

@@ -74,8 +74,7 @@ def what_if(
         for channel in run.running:
             print(f"note: the program of {channel} has not ended; --to a later time computes more of it")
         if diff or page or output is None:
-            names = (Path(recording).name, Path(output).name if output else "changed")
-            show_difference(recording, str(path), page, names, end=end)
+            show_difference(recording, str(path), page, (recording, output or "changed"), end=end)
     return int(bool(run.refused_of_change or run.not_replaced))
 
 
