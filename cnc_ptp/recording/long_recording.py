@@ -39,6 +39,7 @@ from cnc_ptp.recording.reader import (
     Reduced,
     is_kept,
     read_recording,
+    require_messages,
 )
 from cnc_ptp.recording.selection import NEAR_CYCLES
 from cnc_ptp.recording.statistics import largest_error
@@ -97,8 +98,21 @@ def read_for_report(
     """The states from `begin` to `end` in s: every cycle of at most `most_states` states, otherwise reduced.
 
     Of a file or of the parts of a folder. Events, commands and attachments are those of the whole recording.
-    Raises CncError 26001 to 26005, 26014 and 26016.
+    Raises CncError 26001 to 26005, 26014, 26016 and 26224 (nothing is left).
     """
+    recorded = _read_all(path, begin, end, most_states)
+    require_messages(recorded)
+    return recorded
+
+
+def read_own(path: str | Path, begin: float | None, end: float | None) -> Recorded:
+    """The same. Raises besides CncError 26017 for a recording of another program."""
+    recorded = read_for_report(path, begin, end)
+    require_own(recorded.path, recorded.metadata, recorded.states)
+    return recorded
+
+
+def _read_all(path: str | Path, begin: float | None, end: float | None, most_states: int | float) -> Recorded:
     files = files_of(Path(path))
     if most_states >= MOST_STATES and sum(file.stat().st_size for file in files if file.is_file()) < SMALL:
         return read_recording(path)
@@ -108,13 +122,6 @@ def read_for_report(
             parts.append(McapIndex(file))
             opened.callback(parts[-1].close)
         return _read(Path(path), parts, begin, end, most_states)
-
-
-def read_own(path: str | Path, begin: float | None, end: float | None) -> Recorded:
-    """The same. Raises besides CncError 26017 for a recording of another program."""
-    recorded = read_for_report(path, begin, end)
-    require_own(recorded.path, recorded.metadata, recorded.states)
-    return recorded
 
 
 def _read(

@@ -32,6 +32,7 @@ UNREADABLE = 26001
 NOT_MCAP = 26002
 CORRUPT = 26003
 WITHOUT_CHUNKS = 26206
+NOTHING_LEFT = 26224
 CRC_SIZE = 4
 
 Record = TypeVar("Record")
@@ -141,8 +142,10 @@ class RecordReader:
         )
 
     def require_magic(self, begin: bytes) -> None:
-        """Raises CncError 26002 unless a file with this begin is an MCAP file."""
+        """Raises CncError 26002 unless a file with this begin is an MCAP file, 26224 where it was cut within it."""
         if begin != MCAP0_MAGIC:
+            if begin and MCAP0_MAGIC.startswith(begin):
+                raise nothing_left(self.path)
             text, magic = (content.decode(errors="replace") for content in (begin, MCAP0_MAGIC))
             why = f"it begins with {text!r} instead of {magic!r}" if begin else "it is empty"
             raise CncError(
@@ -268,6 +271,15 @@ class McapRecords(RecordReader):
             f"the file ends at offset {self._size} without having been closed ({found}, "
             f"last whole record up to offset {offset}); what was recorded after the last whole chunk is missing"
         )
+
+
+def nothing_left(path: Path) -> CncError:
+    """Of a recording that was cut within its begin."""
+    return CncError(
+        NOTHING_LEFT,
+        f"recording {path}: ends before its first message: it was cut, or has only just begun",
+        "nothing of a run is in it",
+    )
 
 
 def run_length(data: Bytes, size: int) -> int:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import struct
 import zlib
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
@@ -20,7 +20,7 @@ from mcap.opcode import Opcode
 from mcap.records import Attachment, AttachmentIndex, Channel, Metadata, MetadataIndex, Schema, Statistics
 from mcap.writer import MCAP0_MAGIC
 
-from cnc_ptp.recording.mcap_chunks import MessageRun, RawRecord, RecordReader
+from cnc_ptp.recording.mcap_chunks import MessageRun, RawRecord, RecordReader, nothing_left
 from cnc_ptp.recording.mcap_file import HEAD_SIZE, INDEX_ENTRY, RECORD_PREFIX
 from cnc_ptp.wire.layout import Bytes
 
@@ -245,6 +245,14 @@ class McapIndex(RecordReader):
             self.channels[item.id] = item
         else:
             self.counts[item.channel_id] = self.counts.get(item.channel_id, 0) + len(item.rows)
+
+
+def require_chunks(path: Path, missing: str, files: Sequence[McapIndex]) -> None:
+    """Raises CncError 26224 for a recording that was cut before its first message; `missing`: what it lacks."""
+    if missing and not any(file.chunks for file in files):
+        for file in files:
+            file.close()
+        raise nothing_left(path)
 
 
 def _rows(data: Bytes, offsets: npt.NDArray[np.int64], size: int) -> Bytes:

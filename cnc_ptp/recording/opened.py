@@ -21,7 +21,7 @@ import numpy as np
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.recording.mcap_file import METADATA, MISSING
-from cnc_ptp.recording.mcap_index import ChunkPlace, McapIndex
+from cnc_ptp.recording.mcap_index import ChunkPlace, McapIndex, require_chunks
 from cnc_ptp.recording.message_fields import Column, MessageFields
 from cnc_ptp.recording.origin import notes_of
 from cnc_ptp.recording.parts import files_of
@@ -89,8 +89,8 @@ class LazyColumns(Mapping[str, Column]):
 class OpenRecording:
     """A recording, or a folder of rosbag2 with several files, that is read as far as it is asked.
 
-    Raises CncError 26001 to 26003 and 26005 (see McapIndex, schemas); 26011 for topics, fields and times that it does
-    not hold; 26013 where a package is not installed.
+    Raises CncError 26001 to 26003 and 26005 (see McapIndex, schemas); 26224 where nothing is left; 26011 for topics,
+    fields and times that it does not hold; 26013 where a package is not installed.
     """
 
     def __init__(self, path: str | Path) -> None:
@@ -99,6 +99,7 @@ class OpenRecording:
         records = chain.from_iterable(file.metadata for file in self._files)
         self.metadata = notes_of(self.path, (record.metadata for record in records if record.name == METADATA))
         self.missing = missing_of(self.metadata, self._files)
+        require_chunks(self.path, self.missing, self._files)
         first = min((chunk.first_ns for file in self._files for chunk in file.chunks), default=0)
         self.start_ns = int(self.metadata.get("start_ns", first))
         """Log time of time 0."""

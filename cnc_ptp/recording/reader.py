@@ -17,7 +17,7 @@ from mcap_ros2.decoder import DecoderFactory
 from cnc_ptp.protocol.blocks import CommandRecord, Event, read_values
 from cnc_ptp.protocol.event_values import read_event_values
 from cnc_ptp.recording.bag import QOS
-from cnc_ptp.recording.mcap_chunks import McapRecords, MessageRun, RawRecord, RecordReader
+from cnc_ptp.recording.mcap_chunks import McapRecords, MessageRun, RawRecord, RecordReader, nothing_left
 from cnc_ptp.recording.mcap_file import METADATA, MISSING
 from cnc_ptp.recording.origin import notes_of
 from cnc_ptp.recording.parts import files_of
@@ -211,6 +211,12 @@ def read_with(reader: Reader) -> Recorded:
             reader.take(record)
         reader.end_of_file(records.missing)
     return reader.finish()
+
+
+def require_messages(recorded: Recorded) -> None:
+    """Raises CncError 26224 for a recording that was cut before its first message."""
+    if recorded.missing and not recorded.topics:
+        raise nothing_left(recorded.path)
 
 
 def topics_of(path: str | Path) -> dict[str, TopicInfo]:

@@ -17,15 +17,13 @@ from mcap.writer import MCAP0_MAGIC
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.recording.bag import FILE, RECORD
-from cnc_ptp.recording.mcap_chunks import KNOWN_OPCODES, STEP, MessageRun, RawRecord, RecordReader
+from cnc_ptp.recording.mcap_chunks import KNOWN_OPCODES, NOTHING_LEFT, STEP, MessageRun, RawRecord, RecordReader
 from cnc_ptp.recording.mcap_file import METADATA, MISSING, RECORD_PREFIX, McapFile
 from cnc_ptp.recording.mcap_index import McapIndex
 from cnc_ptp.recording.new_recording import NOTHING_WRITTEN, folder_beside, in_place_of, not_written
 from cnc_ptp.recording.origin import WITHOUT
 from cnc_ptp.recording.overwriting import require_recording
 from cnc_ptp.recording.parts import NO_FOLDER, PartsFolder, describe_file, information_of, named_files_of, replace_parts
-
-NOTHING_SAVED = 26224
 
 
 @dataclass
@@ -59,7 +57,7 @@ def require_something(path: Path, recovered: Recovered) -> None:
     """Raises CncError 26224."""
     if not recovered.messages:
         why = "".join(f"; {text}" for text in recovered.lost)
-        raise CncError(NOTHING_SAVED, f"recording {path}: holds no message that can be saved{why}", NOTHING_WRITTEN)
+        raise CncError(NOTHING_LEFT, f"recording {path}: holds no message that can be saved{why}", NOTHING_WRITTEN)
 
 
 def _recover_parts(source: Path, output: Path) -> Recovered:

@@ -22,7 +22,7 @@ from cnc_ptp.parameters import MachineParameters, load_machine
 from cnc_ptp.protocol.blocks import CommandRecord
 from cnc_ptp.recording.bag import FILE
 from cnc_ptp.recording.mcap_file import METADATA
-from cnc_ptp.recording.mcap_index import ChunkPlace, McapIndex
+from cnc_ptp.recording.mcap_index import ChunkPlace, McapIndex, require_chunks
 from cnc_ptp.recording.opened import missing_of
 from cnc_ptp.recording.origin import NOT_COMPUTABLE, WITHOUT, computable_from, not_computable, notes_of
 from cnc_ptp.recording.parts import files_of
@@ -53,7 +53,7 @@ class RunInputs:
     plc_file      name of the PLC in a file that served the run, empty if none did
     begin, end    the first cycle whose blocks are recorded, and that after the last one
 
-    Raises CncError 26001 to 26003, 26014, 26016 (newer format), 26018 (commands are missing).
+    Raises CncError 26001 to 26003, 26014, 26016 (newer format), 26018 (commands are missing), 26224 (nothing is left).
     """
 
     def __init__(self, path: str | Path) -> None:
@@ -62,11 +62,12 @@ class RunInputs:
         self._beside: list[_Part] = []
         records = chain.from_iterable(part.index.metadata for part in self._parts)
         values = notes_of(self.path, (record.metadata for record in records if record.name == METADATA))
+        self.missing = missing_of(values, (part.index for part in self._parts))
+        """What the recording lacks; empty for one that is whole."""
+        require_chunks(self.path, self.missing, [part.index for part in self._parts])
         first = computable_from(self.path, values)
         self.from_0 = not first
         self._without = values.get(WITHOUT, "")
-        self.missing = missing_of(values, (part.index for part in self._parts))
-        """What the recording lacks; empty for one that is whole."""
         self.start_ns = int(values.get("start_ns", "0"))
         self.cycle_time_ns = int(values.get("cycle_time_ns", "1000000"))
         self._attachments = {name: part for part in self._parts for name in part.index.attachments}

@@ -20,7 +20,17 @@ from mcap.opcode import Opcode
 from cnc_ptp.recording.long_recording import picked
 from cnc_ptp.recording.mcap_chunks import MessageRun, RawRecord, RecordReader
 from cnc_ptp.recording.mcap_file import RECORD_PREFIX
-from cnc_ptp.recording.reader import STATE_TYPES, THREAD_STATE, TICK, Names, Reader, Recorded, TopicInfo, read_with
+from cnc_ptp.recording.reader import (
+    STATE_TYPES,
+    THREAD_STATE,
+    TICK,
+    Names,
+    Reader,
+    Recorded,
+    TopicInfo,
+    read_with,
+    require_messages,
+)
 from cnc_ptp.wire.layout import Bytes, Layout, Records
 
 Cycles = npt.NDArray[np.uint64]
@@ -196,15 +206,21 @@ class StoredRecording(Recorded):
 
 
 def read_stored(path: str | Path) -> StoredRecording:
-    """Looks through everything that is whole in a file, or in the parts of a folder. Same errors as read_recording."""
+    """Looks through everything that is whole in a file, or in the parts of a folder.
+
+    Same errors as read_recording, and CncError 26224 where nothing is left.
+    """
     recorded = read_with(_StoredReader(Path(path)))
     assert isinstance(recorded, StoredRecording)
+    require_messages(recorded)
     return recorded
 
 
 def read_columns(path: str | Path, topic: str, fields: Sequence[str]) -> Recorded:
-    """The recording with the cycles and some fields of one topic's states alone. Same errors as read_recording."""
-    return read_with(_ColumnsReader(Path(path), topic, fields))
+    """The recording with the cycles and some fields of one topic's states alone. Same errors as read_stored."""
+    recorded = read_with(_ColumnsReader(Path(path), topic, fields))
+    require_messages(recorded)
+    return recorded
 
 
 class _SparseReader(Reader):

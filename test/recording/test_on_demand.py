@@ -14,12 +14,13 @@ from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.parameters import machine_text
 from cnc_ptp.protocol.blocks import CommandRecord, CycleTick, Event, EventValue, Severity, json_of
 from cnc_ptp.recording.closing import close_cut
+from cnc_ptp.recording.mcap_chunks import NOTHING_LEFT
 from cnc_ptp.recording.mcap_file import NOT_WRITTEN
 from cnc_ptp.recording.memory import BATCH, OBJECT, History, LastSeconds
 from cnc_ptp.recording.on_demand import OnDemand, Snapshots
 from cnc_ptp.recording.origin import RECORD_WHEN, WITHOUT
 from cnc_ptp.recording.reader import iter_messages, read_recording
-from cnc_ptp.recording.recovery import NOTHING_SAVED, recover
+from cnc_ptp.recording.recovery import recover
 from cnc_ptp.recording.settings import Settings, Split
 from cnc_ptp.recording.trigger import Condition
 from cnc_ptp.recording.verify import verify
@@ -441,7 +442,7 @@ def saved_of(cut, saved):
     try:
         return recover(cut, saved).messages
     except CncError as error:
-        assert error.number == NOTHING_SAVED
+        assert error.number == NOTHING_LEFT
         return 0
 
 

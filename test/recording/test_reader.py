@@ -188,7 +188,6 @@ def test_missing_file(tmp_path):
     ("content", "shown"),
     [
         (b"", "it is empty"),
-        (b"\x89MCAP0\r", "it begins with '�MCAP0\\r' instead of '�MCAP0\\r\\n'"),
         (b"SQLite format 3\0 and more", "it begins with 'SQLite f' instead of '�MCAP0\\r\\n'"),
         (b"# cnc_ptp\n", "it begins with '# cnc_pt' instead of '�MCAP0\\r\\n'"),
     ],
