@@ -24,7 +24,6 @@ from cnc_ptp.nodes.bridge.coupling_services import CouplingServices
 from cnc_ptp.nodes.bridge.function_blocks import FunctionBlockActions
 from cnc_ptp.nodes.bridge.hli.emergency_stop import EmergencyStopTopics
 from cnc_ptp.nodes.bridge.hli.hli_topics import HliTopics
-from cnc_ptp.nodes.bridge.jog_topics import PATIENCE as JOG_PATIENCE
 from cnc_ptp.nodes.bridge.jog_topics import JogTopics
 from cnc_ptp.nodes.bridge.joint_states import JointStates
 from cnc_ptp.nodes.bridge.plc_watch import PlcWatch
@@ -116,7 +115,6 @@ class PlcBridgeNode(UnitNode):
                 self._listen(unit, name)
         self._hli_topics = HliTopics(self, self._hli)
         self._emergency_stop = EmergencyStopTopics(self, self.plc, self._warn)
-        process.timer(self, JOG_PATIENCE / 4.0, self._watch_jogs)
         self.create_subscription(msg.LifeSign, LIFE_SIGN, self._on_life_sign, PLC_INPUT)
         if isfinite(self._life_sign_timeout):
             process.timer(self, self._life_sign_timeout / 4.0, self._watch_topics)
@@ -214,6 +212,7 @@ class PlcBridgeNode(UnitNode):
 
     def after_block(self, block: CycleBlock) -> None:
         """HLI and joint states of the cycle before the block: the last one that axes and spindles have reported."""
+        self._watch_jogs()
         if isinstance(block, PlcBlock):
             self._hli_topics.publish(self.plc, block, self.stamp)
         if self._trajectories is not None:
