@@ -163,6 +163,11 @@ class OpenRecording:
         first, last = ((time - self.start_ns) * 1e-9 for time in self._span(topic))
         return first, last
 
+    @property
+    def is_closed(self) -> bool:
+        """All of its files have an index."""
+        return all(file.indexed for file in self._files)
+
     def recorded_span(self) -> tuple[float, float]:
         """First and last time of the states of all units, s; of all topics where there are none. NaN without any."""
         states = [topic for topic, info in self.topics.items() if info.type_name in STATE_TYPES]

@@ -17,7 +17,15 @@ from mcap.writer import MCAP0_MAGIC
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.recording.bag import FILE, RECORD
-from cnc_ptp.recording.mcap_chunks import KNOWN_OPCODES, NOTHING_LEFT, STEP, MessageRun, RawRecord, RecordReader
+from cnc_ptp.recording.mcap_chunks import (
+    CORRUPT,
+    KNOWN_OPCODES,
+    NOTHING_LEFT,
+    STEP,
+    MessageRun,
+    RawRecord,
+    RecordReader,
+)
 from cnc_ptp.recording.mcap_file import METADATA, MISSING, RECORD_PREFIX, McapFile
 from cnc_ptp.recording.mcap_index import McapIndex
 from cnc_ptp.recording.new_recording import NOTHING_WRITTEN, folder_beside, in_place_of, not_written
@@ -28,10 +36,11 @@ from cnc_ptp.recording.parts import NO_FOLDER, PartsFolder, describe_file, infor
 
 @dataclass
 class Recovered:
-    """What was written, and why the rest was not."""
+    """What was written, why the rest was not, and what was wrong without a loss."""
 
     messages: int = 0
     lost: list[str] = field(default_factory=list)
+    mended: list[str] = field(default_factory=list)
 
 
 def recover(source: str | Path, output: str | Path) -> Recovered:
@@ -100,6 +109,7 @@ def _write_parts(parts: list[Path], output: Path) -> Recovered:
         folder.add(target, information_of(target))
         whole.messages += recovered.messages
         whole.lost += [f"{part.name}: {text}" for text in recovered.lost]
+        whole.mended += [f"{part.name}: {text}" for text in recovered.mended]
     return whole
 
 
@@ -107,12 +117,15 @@ def _recover_file(path: Path, output: Path, before: Sequence[str] = (), behind: 
     """`before`, `behind`: parts of the run that cannot be read; without those before it cannot be computed again."""
     records = _Records(path)
     with McapFile(output) as file:
-        copy = _Copy(records, file, *_names_of_summary(path))
+        schemas, channels, damage = _names_of_summary(path)
+        copy = _Copy(records, file, schemas, channels)
         for record in records:
             copy.take(record)
         copy.take_loose()
         if records.end:
             copy.recovered.lost.append(records.end)
+        if damage and not copy.recovered.lost:
+            copy.recovered.mended.append(f"the index at its end was {damage}, all messages are kept")
         lost = [*(f"{name} is missing" for name in [*before, *behind]), *copy.recovered.lost]
         without = {WITHOUT: f"what was before it is lost: {', '.join(before)}"} if before else {}
         if lost:
@@ -120,14 +133,14 @@ def _recover_file(path: Path, output: Path, before: Sequence[str] = (), behind: 
     return copy.recovered
 
 
-def _names_of_summary(path: Path) -> tuple[dict[int, Schema], dict[int, Channel]]:
-    """Schemas and channels; the chunk in which they were announced may be damaged."""
+def _names_of_summary(path: Path) -> tuple[dict[int, Schema], dict[int, Channel], str]:
+    """Schemas and channels; the chunk in which they were announced may be damaged. Why there are none."""
     try:
         index = McapIndex(path)
-    except CncError:
-        return {}, {}
+    except CncError as error:
+        return {}, {}, "damaged" if error.number == CORRUPT else ""
     index.close()
-    return (index.schemas, index.channels) if index.indexed else ({}, {})
+    return (index.schemas, index.channels, "") if index.indexed else ({}, {}, "missing")
 
 
 class _Records(RecordReader):

@@ -69,7 +69,7 @@ def test_taken(tmp_path):
     table, saved = tmp_path / "point.csv", tmp_path / "saved.mcap"
     assert call("export", foreign, "--topic", "/point", "-o", table).exit_code == 0
     assert table.read_text().splitlines()[:2] == ["time,x,y,z", "0.0,0.0,1.0,0.0"]
-    assert call("recover", foreign, "-o", saved).output == f"{saved}: 20 messages\n"
+    assert call("recover", foreign, "-o", saved).output == f"{saved}: 20 messages, 0 s to 1.9 s\n"
 
 
 def test_no_message_of_ros(tmp_path):

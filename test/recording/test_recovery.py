@@ -68,13 +68,46 @@ def test_a_damaged_chunk_is_left_out(tmp_path):
     result = CliRunner().invoke(cli.main, ["recover", str(path), "-o", str(output)])
     assert result.exit_code == 0
     first, lost = result.output.splitlines()
-    assert first.startswith(f"{output}: ") and lost.startswith(f"lost: at offset {place.offset}: the ")
+    assert first.startswith(f"{output}: ") and first.endswith(" messages, 0 s to 2.999 s")
+    assert lost.startswith(f"lost: at offset {place.offset}: the ")
     with cnc_ptp.recording.open(output) as recording:
         cycles = recording.columns("/x/state", "cycle")["cycle"].tolist()
         assert cycles == [*range(1000), *range(2000, 3000)]
         assert len(recording.columns("/s/state", "cycle")["cycle"]) == 3000
     recorded = read_recording(output)
     assert not recorded.complete and recorded.missing.startswith(f"at offset {place.offset}: ")
+
+
+@pytest.mark.parametrize(("what", "place"), [("damaged", -60), ("missing", None)])
+def test_a_damaged_index_alone_is_told(tmp_path, what, place):
+    path, output = tmp_path / "run.mcap", tmp_path / "out.mcap"
+    smooth_run(path, 1.5, axes=("x",))
+    data, expected = bytearray(path.read_bytes()), messages(path)
+    if place is None:
+        del data[-20:]
+    else:
+        data[place] ^= 0x55
+    path.write_bytes(data)
+    result = CliRunner().invoke(cli.main, ["recover", str(path), "-o", str(output)])
+    assert result.output.splitlines() == [
+        f"{output}: {len(expected)} messages, 0 s to 1.499 s",
+        f"note: the index at its end was {what}, all messages are kept",
+    ]
+    assert messages(output) == expected and read_recording(output).complete
+
+
+def test_a_cut_file_is_told_up_to_its_last_state(tmp_path):
+    path, output = tmp_path / "run.mcap", tmp_path / "out.mcap"
+    smooth_run(path, 3.0, axes=("x",))
+    index = McapIndex(path)
+    [*_, (_, place)] = sorted((chunk.first_ns, chunk.offset) for chunk in index.chunks)
+    index.close()
+    path.write_bytes(path.read_bytes()[: place + 20])
+    result = CliRunner().invoke(cli.main, ["recover", str(path), "-o", str(output)])
+    first, lost = result.output.splitlines()
+    last = max(int(rows["cycle"].max()) for rows in read_recording(path).states.values())
+    assert first == f"{output}: {len(messages(output))} messages, 0 s to {last / 1000:g} s"
+    assert lost == f"lost: nothing whole follows at offset {place} of {place + 20}"
 
 
 def test_the_recording_itself_is_not_overwritten(tmp_path):

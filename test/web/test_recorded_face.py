@@ -501,3 +501,14 @@ def test_no_snapshot_and_no_jog_of_a_recording(recording):
             assert here.hub.right.holder is None
 
     asyncio.run(story())
+
+
+def test_a_recording_that_was_cut_is_not_shown(recording, tmp_path):
+    cut = tmp_path / "cut.mcap"
+    cut.write_bytes(Path(recording).read_bytes()[:-3000])
+    with pytest.raises(CncError) as refused:
+        recorded_face(str(cut))
+    assert str(refused.value) == (
+        f"P-ERR-26003 recording {cut}: the file was not closed; what was recorded after its last whole chunk is missing; "
+        "nothing is shown, 'cnc_ptp recover' makes a file that can be shown"
+    )

@@ -21,6 +21,8 @@ from cnc_ptp.nodes.topics import BLOCK_CLASSES
 from cnc_ptp.parameters import load_machine
 from cnc_ptp.protocol.blocks import ChannelOffsets, CommandRecord, CycleBlock, Event, Severity
 from cnc_ptp.recording.command_words import is_load
+from cnc_ptp.recording.mcap_chunks import CORRUPT
+from cnc_ptp.recording.mcap_index import NOT_CLOSED
 from cnc_ptp.recording.opened import OpenRecording
 from cnc_ptp.recording.parts import files_of
 from cnc_ptp.web.faces.description import describe_units
@@ -62,6 +64,13 @@ class RecordedFile:
     def __init__(self, path: str) -> None:
         """Raises CncError 26001 to 26003, 26005, 26011."""
         self._recording = OpenRecording(path)
+        if not self._recording.is_closed:
+            self._recording.close()
+            raise CncError(
+                CORRUPT,
+                f"recording {path}: {NOT_CLOSED}",
+                "nothing is shown, 'cnc_ptp recover' makes a file that can be shown",
+            )
         self.parameters = load_machine(self._recording.attached("machine.yaml"), path)
         self.kinds = unit_kinds(self.parameters)
         self.sets = {unit: self.parameters.sets[unit] for unit, kind in self.kinds.items() if kind != "plc"}
