@@ -10,6 +10,7 @@ from cnc_ptp.channel.program_report import ProgramReport
 from cnc_ptp.commands.run import run as command
 from cnc_ptp.commands.run.progress import RunProgress
 from cnc_ptp.commands.run.run import print_summary
+from cnc_ptp.commands.run.simulate import ratio_text
 from cnc_ptp.nodes.unit.lateness import Lateness
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.channel_states import ChannelStateCode as C
@@ -35,6 +36,13 @@ def monitor(diagnostics, *, notes=(), run_failed=False, programs=ONE_CHANNEL):
         refused=sum(note.refused for note in notes),
         run_failed=run_failed,
     )
+
+
+@pytest.mark.parametrize(
+    ("ratio", "text"), [(0.573, "0.57"), (0.0412, "0.041"), (3.44, "3.4"), (9.96, "10"), (57.4, "57"), (123.4, "123")]
+)
+def test_a_ratio_to_real_time_has_two_digits(ratio, text):
+    assert ratio_text(ratio) == text
 
 
 def test_axes_come_in_the_order_of_the_machine_file(capsys):

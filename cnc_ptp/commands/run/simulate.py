@@ -170,6 +170,11 @@ def print_note_of_checkpoints(run: OfflineRun) -> None:
         Console(highlight=False, soft_wrap=True).print(f"note: {run.checkpoint_fault}", style="yellow", markup=False)
 
 
+def ratio_text(ratio: float) -> str:
+    """With two digits at least: 0.57, 3.4, 120."""
+    return f"{ratio:.2g}" if ratio < 10.0 else f"{ratio:.0f}"
+
+
 def print_summary(
     machine: MachineParameters, result: Result, wall_seconds: float, duration: float | None = None
 ) -> None:
@@ -178,7 +183,7 @@ def print_summary(
     seconds = result.cycles * cycle_time
     console.print(
         f"machine time {seconds:.3f} s ({result.cycles} cycles) in {wall_seconds:.2f} s: "
-        f"{seconds / max(wall_seconds, 1e-9):.0f} times real time, {KERNEL.kind}"
+        f"{ratio_text(seconds / max(wall_seconds, 1e-9))} times real time, {KERNEL.kind}"
     )
     for line in time_lines(result.programs, cycle_time):
         console.print(line, markup=False)
