@@ -72,6 +72,14 @@ def motion_of_recordings(recorded_motion: Any, request: pytest.FixtureRequest) -
         assert not found, "\n".join(found)
 
 
+def pytest_configure(config: pytest.Config) -> None:
+    import long_support
+    from approx_support import compare_at_once
+
+    compare_at_once()
+    long_support.SHORT = "not long" in config.option.markexpr
+
+
 def pytest_collection_finish() -> None:
     """Twenty thousand collected tests stay to the end: nobody need look through them for garbage again and again."""
     gc.collect()

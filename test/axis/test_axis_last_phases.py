@@ -12,11 +12,14 @@ import pytest
 from axis_motion_support import motion, ramp_time, run_to_standstill
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from long_support import examples, long
 from machine_support import CYCLE_TIME, UnitBench, assert_axis_smooth, axis_bench, seven_phases
 
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 
-QUICK = settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True)
+QUICK = settings(
+    max_examples=examples(25), deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True
+)
 V, A, J = 1500.0, 6000.0, 100_000.0
 QUICKLY = {"velocity": V, "acceleration": A, "deceleration": A, "jerk": J}
 NEW_VELOCITY = {"velocity": 700.0, "activation_position": 1900.0}
@@ -68,7 +71,7 @@ def test_the_numbers_of_the_issue() -> None:
         assert_axis_smooth(bench, acceleration=A, jerk=J)
 
 
-@pytest.mark.parametrize("direction", [1.0, -1.0])
+@pytest.mark.parametrize("direction", [1.0, *long([-1.0])])
 @pytest.mark.parametrize("how", ["brake", "halt", "override 0"])
 @pytest.mark.parametrize("part", [0.0, 0.5, 0.9, 0.95, 0.999])
 @pytest.mark.parametrize("jerk", [J, 10_000.0])

@@ -20,6 +20,7 @@ from axis_motion_support import (
 )
 from axis_states_support import A, J, V
 from error_support import Refused, refused
+from long_support import long
 from machine_support import CYCLE_TIME, UnitBench, assert_axis_smooth, axis_bench, position_after, seven_phases
 
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
@@ -116,7 +117,7 @@ def test_case_2_at_once(direction: float, new: float, activation: float) -> None
         (499.0, 450.0),
     ],
 )
-@pytest.mark.parametrize("new", [50.0, 400.0, 2000.0])
+@pytest.mark.parametrize("new", [50.0, 400.0, *long([2000.0])])
 def test_cases_3_5_6_stop_and_return_with_the_old_velocity(
     direction: float, target: float, activation: float, new: float
 ) -> None:
@@ -165,7 +166,7 @@ def test_both_directions_are_mirror_images_to_the_bit() -> None:
 # ---------------------------------------------------------------- activation
 
 
-@pytest.mark.parametrize("count", [1, 7, 1000])
+@pytest.mark.parametrize("count", [7, *long([1, 1000])])
 @pytest.mark.parametrize("activation", [351.3, 999.999, 1000.0, 2200.0])
 def test_the_activation_does_not_depend_on_blocks(count: int, activation: float) -> None:
     benches = []
@@ -449,7 +450,7 @@ def test_a_request_at_override_0_counts_when_the_axis_goes_on(kind: int) -> None
         ({"activation_position": math.inf}, refused(22001, argument="activation_position")),
     ],
 )
-@pytest.mark.parametrize("command", [None, "stop", "halt", "pending"])
+@pytest.mark.parametrize("command", [None, "pending", *long(["stop", "halt"])])
 def test_a_refused_request_leaves_the_motion_to_the_bit(
     arguments: dict[str, float], wanted: Refused, command: str | None
 ) -> None:

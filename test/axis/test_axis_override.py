@@ -17,6 +17,7 @@ from axis_motion_support import (
 )
 from axis_states_support import A, J, V
 from error_support import refused
+from long_support import long
 from machine_support import CYCLE_TIME, UnitBench, assert_axis_smooth, axis_bench, position_after, seven_phases
 
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
@@ -88,7 +89,7 @@ def test_override_0_at_the_start_keeps_the_job_and_waits(kind: int) -> None:
 
 
 @pytest.mark.parametrize("kind", [1, 2, 3, 4])
-@pytest.mark.parametrize("cycle", [30, 250, 470, 700, 1100])
+@pytest.mark.parametrize("cycle", [250, 700, *long([30, 470, 1100])])
 def test_override_0_in_motion_holds_and_100_goes_on(kind: int, cycle: int) -> None:
     bench = axis_bench(override_type=kind)
     start(bench, 3000.0)
@@ -330,7 +331,7 @@ def test_in_a_stop_the_override_changes_nothing(command: str, percent: float) ->
 
 @pytest.mark.parametrize("kind", [1, 2, 3, 4])
 @pytest.mark.parametrize("levels", [(100.0, 20.0), (0.0, 100.0), (60.0, 61.0), (0.0001, 100.0)])
-@pytest.mark.parametrize("pause", [1, 7, 90])
+@pytest.mark.parametrize("pause", [1, *long([7, 90])])
 def test_rapid_toggling_never_steps_and_ends_at_the_target(kind: int, levels: tuple[float, float], pause: int) -> None:
     bench = started(2000.0, 50, override_type=kind)
     for n in range(200):

@@ -6,12 +6,15 @@ from typing import Any
 
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from long_support import examples
 from machine_support import UnitBench, assert_smooth, axis_bench
 
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 
 A, J = 5000.0, 50_000.0
-QUICK = settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True)
+QUICK = settings(
+    max_examples=examples(50), deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True
+)
 
 dynamics = st.fixed_dictionaries(
     {

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from long_support import examples
 from scipy.interpolate import CubicSpline
 from slave_support import follow as follow_block
 
@@ -15,7 +16,7 @@ from cnc_ptp.axis.cam import CamCoupling, CamTable
 from cnc_ptp.errors import CncError
 from cnc_ptp.motion.setpoints import MotionState
 
-QUICK = settings(max_examples=60, deadline=None, derandomize=True, database=None)
+QUICK = settings(max_examples=examples(60), deadline=None, derandomize=True, database=None)
 T = 0.001
 COSINE = [[30.0 * k, 50.0 * (1.0 - cos(pi * k / 6.0))] for k in range(13)]
 """0 … 360: up to 100 mm and back."""

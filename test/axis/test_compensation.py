@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from long_support import examples
 from scipy.integrate import cumulative_simpson, quad, simpson
 from scipy.optimize import brentq
 
 from cnc_ptp.axis.compensation import Compensation, plan_compensation
 from cnc_ptp.motion import Profile
 
-QUICK = settings(max_examples=100, deadline=None, derandomize=True, database=None)
+QUICK = settings(max_examples=examples(100), deadline=None, derandomize=True, database=None)
 CYCLE_TIME = 0.001
 
 

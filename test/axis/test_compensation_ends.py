@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from error_support import refused
+from long_support import long
 from machine_support import CYCLE_TIME, UnitBench
 from superposition_support import (
     COMPENSATING,
@@ -179,7 +180,7 @@ def emergency_stop(bench: UnitBench) -> None:
 @pytest.mark.parametrize("phase", PHASES)
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 @pytest.mark.parametrize(("end", "state"), [(fault, 7), (power_off, 0), (emergency_stop, 1)])
-@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("side", [1.0, *long([-1.0])])
 def test_every_end_in_every_phase_comes_to_rest_without_a_step(
     end: Any, state: int, phase: str, sign: float, side: float
 ) -> None:

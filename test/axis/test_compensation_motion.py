@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from long_support import long
 from machine_support import CYCLE_TIME, UnitBench, axis_bench
 from scipy.integrate import simpson
 from scipy.optimize import brentq
@@ -201,7 +202,7 @@ def reference_way(clean: UnitBench, begin: int, w: Any, sign: float, vp: float) 
     ids=["in the middle", "in the middle, VP lower", "0 at once", "0 later", "up and down"],
 )
 @pytest.mark.parametrize("difference", [250.0, -250.0])
-@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("side", [1.0, *long([-1.0])])
 def test_overrides_during_a_compensation(
     vp: float, changes: list[tuple[int, float]], difference: float, side: float
 ) -> None:
@@ -433,7 +434,7 @@ def test_a_start_over_no_distance_after_a_compensation() -> None:
     assert bench.column("set_position")[-10:] == [here] * 10
 
 
-@pytest.mark.parametrize("count", [1, 7, 1000])
+@pytest.mark.parametrize("count", [7, *long([1, 1000])])
 def test_the_size_of_blocks_changes_no_bit(count: int) -> None:
     """Commands come at the same cycles in blocks of 1, 7, 10 and 1000 cycles."""
     runs = []

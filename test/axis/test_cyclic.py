@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from long_support import examples
 from slave_support import follow
 
 from cnc_ptp.axis.coupling import CyclicCoupling
 from cnc_ptp.motion.setpoints import MotionState
 
-QUICK = settings(max_examples=60, deadline=None, derandomize=True, database=None)
+QUICK = settings(max_examples=examples(60), deadline=None, derandomize=True, database=None)
 T = 0.001
 A = 5000.0
 BLOCK = 10

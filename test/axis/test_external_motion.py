@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from long_support import long
 from machine_support import CYCLE_TIME, UnitBench, seven_phases
 from scipy.interpolate import CubicHermiteSpline
 from superposition_support import (
@@ -27,7 +28,7 @@ from superposition_support import (
 
 @pytest.mark.parametrize("start", [0.0, 0.1, -1234.567])
 @pytest.mark.parametrize("distance", [600.0, -600.0])
-@pytest.mark.parametrize("count", [1, 7, 10, 1000])
+@pytest.mark.parametrize("count", [7, 10, *long([1, 1000])])
 def test_absolute_setpoints_come_out_to_the_bit(start: float, distance: float, count: int) -> None:
     bench = external_axis(start_position=start, count=count)
     rows = generator(distance, first_cycle=20, start=start)

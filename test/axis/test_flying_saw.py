@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from long_support import examples
 from machine_support import assert_smooth
 from slave_support import follow as follow_block
 
@@ -14,7 +15,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.motion import Limits
 from cnc_ptp.motion.setpoints import MotionState
 
-QUICK = settings(max_examples=60, deadline=None, derandomize=True, database=None)
+QUICK = settings(max_examples=examples(60), deadline=None, derandomize=True, database=None)
 T = 0.001
 LIMITS = Limits(velocity=2000.0, acceleration=5000.0, deceleration=5000.0, jerk=50000.0)
 BLOCK = 10

@@ -8,10 +8,11 @@ from fractions import Fraction
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from long_support import examples
 
 from cnc_ptp.axis.modulo import modulo_target
 
-MANY = settings(max_examples=500, deadline=None, derandomize=True)
+MANY = settings(max_examples=examples(500), deadline=None, derandomize=True)
 NEAR = 3.6e-7
 """Degrees within which an axis is at its modulo position already."""
 

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from job_support import DONE, assert_each_ends_once, job_events
+from long_support import examples
 from machine_support import UnitBench, assert_smooth, axis_bench
 
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
@@ -15,7 +16,9 @@ from cnc_ptp.protocol.axis_states import AxisStateCode as S
 A, J, V = 5000.0, 50_000.0, 2000.0
 ADDED_A, ADDED_J, ADDED_V = 1000.0, 10_000.0, 200.0
 LIMITS = {"max_velocity": V, "reference_velocity": V, "soft_limit_negative": -2000.0, "soft_limit_positive": 2000.0}
-QUICK = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True)
+QUICK = settings(
+    max_examples=examples(60), deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True
+)
 Commands = list[tuple[tuple[str, dict[str, Any]], int]]
 
 modes = st.sampled_from(

@@ -10,6 +10,7 @@ from axis_motion_support import run_to_standstill
 from axis_states_support import DYNAMICS, STATES
 from error_support import refused
 from job_support import told
+from long_support import long
 from machine_support import MILL, MachineBench, UnitBench, axis_bench, machine
 from slave_support import SlaveBench
 from superposition_support import column
@@ -39,7 +40,7 @@ def assert_moves_alike(bench: UnitBench, alone: UnitBench, at: int, distance: fl
         assert np.abs(shift[:at]).max(initial=0.0) == 0.0 and np.abs(shift[at:] - distance).max() < 1e-9
 
 
-@pytest.mark.parametrize("distance", [1000.0, -12.345])
+@pytest.mark.parametrize("distance", [-12.345, *long([1000.0])])
 @pytest.mark.parametrize(
     "name",
     [name for name in STATES if name not in ("external", "external_beside", "on_path")],

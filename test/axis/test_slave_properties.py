@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from long_support import examples
 from replay_support import bits, replay
 from slave_support import COMPENSATING, COMPENSATION, DYNAMICS, PROTECTED, SlaveBench, axes_named
 
@@ -17,7 +18,7 @@ from cnc_ptp.protocol.axis_states import AxisStateCode as S
 
 NAMES = ("b", "d", "a", "c")
 T = 0.001
-QUICK = settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
+QUICK = settings(max_examples=examples(40), deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
 
 Step = tuple[int, str, str, dict[str, Any]]
 """Blocks before it, axis, command, arguments."""
@@ -126,7 +127,7 @@ def test_random_commands(sequence: list[Step]) -> None:
 
 
 @given(steps)
-@settings(QUICK, max_examples=10)
+@settings(QUICK, max_examples=examples(10))
 def test_random_commands_with_delayed_errors_and_their_replay(sequence: list[Step]) -> None:
     bench = played(sequence, delayed=True)
     for axis in NAMES:

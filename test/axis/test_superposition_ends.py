@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from long_support import examples
 from machine_support import CYCLE_TIME, UnitBench
 from superposition_support import A, J, SetpointRow, column, generator, moving_axis
 
@@ -21,7 +22,11 @@ STOPS: dict[str, dict[str, Any]] = {"stop": {}, "halt": {}, "reset": {}, "power"
 FAULTS: dict[str, dict[str, Any]] = {"upstream_lost": {"source": "plc"}, "emergency_stop": STRONG}
 
 slow = settings(
-    max_examples=40, deadline=None, derandomize=True, database=None, suppress_health_check=[HealthCheck.too_slow]
+    max_examples=examples(40),
+    deadline=None,
+    derandomize=True,
+    database=None,
+    suppress_health_check=[HealthCheck.too_slow],
 )
 begins = st.integers(0, 900)
 signs = st.sampled_from([1.0, -1.0])

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from long_support import examples
 from machine_support import CYCLE_TIME, UnitBench, axis_bench
 from superposition_support import COMPENSATING, EXTERNAL, HAS_JOB, A, column, generator, has_bit
 
@@ -21,7 +22,11 @@ RATE = 5000.0
 """Largest AK+ and AK-, mm/s²."""
 
 slow = settings(
-    max_examples=60, deadline=None, derandomize=True, database=None, suppress_health_check=[HealthCheck.too_slow]
+    max_examples=examples(60),
+    deadline=None,
+    derandomize=True,
+    database=None,
+    suppress_health_check=[HealthCheck.too_slow],
 )
 
 Step = tuple[str, dict[str, Any], int]

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from long_support import examples
 
 from cnc_ptp.axis.tables import last_leg, peak_velocity, reaches, standing
 from cnc_ptp.motion import Limits, Profile, plan_rest_to_rest, plan_to_position
 
-MANY = settings(max_examples=200, deadline=None, derandomize=True)
+MANY = settings(max_examples=examples(200), deadline=None, derandomize=True)
 
 
 def test_a_standing_table() -> None:

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from job_support import ABORTED, ACTIVE, DONE, FAILED, end_of, job, start_of
+from long_support import examples, long
 from machine_support import CYCLE_TIME, UnitBench, axis_bench
 from scipy.interpolate import BPoly, CubicHermiteSpline
 
@@ -118,7 +119,7 @@ values = st.floats(-100.0, 100.0, allow_subnormal=False)
 
 
 @given(st.lists(st.tuples(values, values, values), min_size=2, max_size=4), st.floats(0.05, 3.0))
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(150), deadline=None)
 def test_extrema_are_not_exceeded_anywhere(points: list[tuple[float, float, float]], seconds: float) -> None:
     """Ten thousand samples of each quantity stay within what the closed forms tell, and come near to it."""
     rows = [TrajectoryPoint(index * seconds, *point) for index, point in enumerate(points)]
@@ -215,7 +216,7 @@ STOPS = [
 
 @pytest.mark.parametrize("columns", [3, 4])
 @pytest.mark.parametrize(("command", "arguments", "state", "status"), STOPS, ids=[row[0] for row in STOPS])
-@pytest.mark.parametrize("cycles", [1, 300, 760, 1690])
+@pytest.mark.parametrize("cycles", [300, 1690, *long([1, 760])])
 def test_what_ends_it_continues_from_its_state(
     command: str, arguments: dict[str, Any], state: S, status: int, columns: int, cycles: int
 ) -> None:
