@@ -20,6 +20,7 @@ from cnc_ptp.parameters.lists.kinds import WORDS, Kind
 from cnc_ptp.parameters.lists.problems import NOTHING_WRITTEN, ListError, ListProblem
 from cnc_ptp.parameters.lists.report import Report
 from cnc_ptp.parameters.lists.text import FOREIGN
+from cnc_ptp.recording.overwriting import no_folder
 
 LARGEST_FILE = 16_000_000
 """Bytes of a file that may be a list."""
@@ -90,7 +91,7 @@ def require_output(output: str | None, folder: Path, force: bool) -> None:
     if output is None:
         return
     if not Path(output).absolute().parent.is_dir():
-        raise CncError(errors.LIST_OUTPUT, f"{output} cannot be written: its folder does not exist", NOTHING_WRITTEN)
+        raise CncError(errors.LIST_OUTPUT, f"{output} cannot be written: {no_folder(output)}", NOTHING_WRITTEN)
     if Path(output).is_dir():
         raise CncError(errors.LIST_OUTPUT, f"{output} is a folder; name a file", NOTHING_WRITTEN)
     if Path(output).suffix.lower() == SUFFIX and Path(output).resolve().parent == folder.resolve():
@@ -145,7 +146,7 @@ def export_folder(machine: str, output: str, *, force: bool = False) -> int:
 def require_folder(folder: Path, force: bool) -> None:
     """Raises CncError 25045 for a folder with something in it, or one in no folder."""
     if not folder.absolute().parent.is_dir():
-        raise CncError(errors.LIST_OUTPUT, f"{folder} cannot be written: its folder does not exist", NOTHING_WRITTEN)
+        raise CncError(errors.LIST_OUTPUT, f"{folder} cannot be written: {no_folder(folder)}", NOTHING_WRITTEN)
     if folder.exists() and not folder.is_dir():
         raise CncError(errors.LIST_OUTPUT, f"{folder} is a file; name a folder", NOTHING_WRITTEN)
     if not force and folder.is_dir() and any(folder.iterdir()):

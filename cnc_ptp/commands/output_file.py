@@ -8,7 +8,7 @@ from rich.console import Console
 
 from cnc_ptp.commissioning.faults import BAD_OUTPUT
 from cnc_ptp.errors import CncError
-from cnc_ptp.recording.overwriting import overwritten, replacing
+from cnc_ptp.recording.overwriting import no_folder, overwritten, replacing
 
 
 def beside(file: str, suffix: str) -> str:
@@ -22,7 +22,7 @@ def check_output(output: str | None, **inputs: str | None) -> None:
     if output is None:
         return
     if not Path(output).absolute().parent.is_dir():
-        raise CncError(BAD_OUTPUT, f"{output} cannot be written: its folder does not exist", "nothing was started")
+        raise CncError(BAD_OUTPUT, f"{output} cannot be written: {no_folder(output)}", "nothing was started")
     if what := overwritten(output, inputs):
         raise CncError(BAD_OUTPUT, f"{output} would overwrite the {what}", "nothing was started")
 

@@ -46,6 +46,7 @@ from mcap.writer import LIBRARY_IDENTIFIER, MCAP0_MAGIC
 from cnc_ptp.errors import CncError
 from cnc_ptp.recording.bag import RECORD, bag_information, forget_beside, metadata_text, write_beside
 from cnc_ptp.recording.kept_records import KeptRecords
+from cnc_ptp.recording.overwriting import why_not_made
 from cnc_ptp.recording.settings import compressor
 from cnc_ptp.wire.layout import Bytes
 
@@ -135,7 +136,7 @@ class McapFile:
                 self._stream.truncate()
         except OSError as error:
             raise CncError(
-                NOT_WRITTEN, f"recording {path}: cannot be created: {error.strerror}", "nothing is recorded"
+                NOT_WRITTEN, f"recording {path} cannot be written: {why_not_made(error, path)}", "nothing is recorded"
             ) from error
         forget_beside(path)
         if found is None:

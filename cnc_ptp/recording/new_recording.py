@@ -11,6 +11,7 @@ from tempfile import TemporaryDirectory
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.recording.mcap_file import NOT_WRITTEN
+from cnc_ptp.recording.overwriting import why_not_made
 
 NOTHING_WRITTEN = "nothing was written"
 
@@ -23,7 +24,7 @@ def in_place_of(output: Path) -> Iterator[Path]:
     """
     target = Path(os.path.realpath(output))  # a link is kept
     if target.is_dir():
-        raise not_written(output, f"cannot be created: {os.strerror(EISDIR)}")
+        raise not_written(output, os.strerror(EISDIR))
     if target.exists() and not target.is_file():
         yield target
         return
@@ -41,7 +42,7 @@ def said_of(output: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise not_written(output, f"cannot be created: {error.strerror}") from error
+        raise not_written(output, why_not_made(error, output)) from error
 
 
 @contextmanager
@@ -57,8 +58,8 @@ def folder_beside(output: Path) -> Iterator[Path]:
         except CncError as error:
             if error.number != NOT_WRITTEN:
                 raise
-            raise not_written(output, f"cannot be written: {error.reason.rpartition(': ')[2]}") from error
+            raise not_written(output, error.reason.rpartition(": ")[2]) from error
 
 
 def not_written(output: Path, why: str) -> CncError:
-    return CncError(NOT_WRITTEN, f"recording {output}: {why}", NOTHING_WRITTEN)
+    return CncError(NOT_WRITTEN, f"recording {output} cannot be written: {why}", NOTHING_WRITTEN)

@@ -74,6 +74,16 @@ def replacing(output: str | Path) -> Iterator[Path]:
             part.unlink(missing_ok=True)
 
 
+def no_folder(output: str | Path) -> str:
+    """Why a file or a folder cannot be made there."""
+    return f"there is no folder {Path(os.path.realpath(output)).parent}, make it or give another name"
+
+
+def why_not_made(error: OSError, output: str | Path) -> str:
+    """Why `output` cannot be made."""
+    return no_folder(output) if isinstance(error, FileNotFoundError) else str(error.strerror)
+
+
 def why_not_written(error: OSError) -> str:
     """Why a file cannot be written: other libraries name the temporary file in their texts."""
     return os.strerror(error.errno) if error.errno else str(error)

@@ -21,7 +21,7 @@ from cnc_ptp import yaml_text
 from cnc_ptp.errors import CncError
 from cnc_ptp.recording.bag import FILE, INFORMATION, bag_information, metadata_text, write_beside
 from cnc_ptp.recording.mcap_chunks import UNREADABLE
-from cnc_ptp.recording.overwriting import replacing
+from cnc_ptp.recording.overwriting import replacing, why_not_made
 
 NO_BAG = 26014
 NO_FOLDER = 26020
@@ -41,7 +41,9 @@ class PartsFolder:
                 old.unlink(missing_ok=True)
         except OSError as error:
             raise CncError(
-                NO_FOLDER, f"recording {folder}: no folder for its parts: {error.strerror}", "nothing is recorded"
+                NO_FOLDER,
+                f"recording {folder}: no folder for its parts: {why_not_made(error, folder)}",
+                "nothing is recorded",
             ) from error
 
     @property

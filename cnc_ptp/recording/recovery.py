@@ -30,7 +30,7 @@ from cnc_ptp.recording.mcap_file import METADATA, MISSING, RECORD_PREFIX, McapFi
 from cnc_ptp.recording.mcap_index import McapIndex
 from cnc_ptp.recording.new_recording import NOTHING_WRITTEN, folder_beside, in_place_of, not_written
 from cnc_ptp.recording.origin import WITHOUT
-from cnc_ptp.recording.overwriting import require_recording
+from cnc_ptp.recording.overwriting import require_recording, why_not_made
 from cnc_ptp.recording.parts import NO_FOLDER, PartsFolder, describe_file, information_of, named_files_of, replace_parts
 
 
@@ -82,9 +82,9 @@ def _recover_parts(source: Path, output: Path) -> Recovered:
                 require_something(source, whole)
                 replace_parts(new, target)
             except OSError as error:
-                raise not_written(output, f"cannot be written: {error.strerror}") from error
+                raise not_written(output, str(error.strerror)) from error
     except OSError as error:
-        reason = f"recording {output}: no folder for its parts: {error.strerror}"
+        reason = f"recording {output}: no folder for its parts: {why_not_made(error, output)}"
         raise CncError(NO_FOLDER, reason, NOTHING_WRITTEN) from error
     return whole
 

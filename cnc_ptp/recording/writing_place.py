@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 
 from cnc_ptp.errors import CncError
+from cnc_ptp.recording.overwriting import why_not_made
 
 NOT_WRITABLE = 26113
 EXISTS = 26192
@@ -22,7 +23,7 @@ def require_writable(path: str, *, where: str = "", effect: str = "nothing was s
             file.unlink()
     except OSError as error:
         raise CncError(
-            NOT_WRITABLE, f"recording {path} cannot be written: {error.strerror}", effect, where=where
+            NOT_WRITABLE, f"recording {path} cannot be written: {why_not_made(error, path)}", effect, where=where
         ) from None
 
 

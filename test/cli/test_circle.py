@@ -230,7 +230,8 @@ def test_a_feed_that_the_axes_cannot_hold_is_warned_about():
         ),
         (
             ["--radius", 25, "--feed", 2000, "-o", "/nowhere/c.svg"],
-            "P-ERR-27030 /nowhere/c.svg cannot be written: its folder does not exist; nothing was started",
+            "P-ERR-27030 /nowhere/c.svg cannot be written: there is no folder /nowhere, make it or give another name; "
+            "nothing was started",
         ),
         (
             ["--radius", 25, "--feed", 2000, "-o", "circle.pdf"],

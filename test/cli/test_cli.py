@@ -189,11 +189,13 @@ def test_check_knows_the_limits_of_a_machine_only(tmp_path):
         ),
         (
             ["simulate", MILL, "--record", "/nowhere/a.mcap"],
-            "P-ERR-26007 recording /nowhere/a.mcap: cannot be created: No such file or directory; nothing is recorded",
+            "P-ERR-26113 recording /nowhere/a.mcap cannot be written: there is no folder /nowhere, make it or give another "
+            "name; nothing was started",
         ),
         (
             ["run", MILL, "--record", "/nowhere/a.mcap"],
-            "P-ERR-26113 recording /nowhere/a.mcap cannot be written: No such file or directory; nothing was started",
+            "P-ERR-26113 recording /nowhere/a.mcap cannot be written: there is no folder /nowhere, make it or give another "
+            "name; nothing was started",
         ),
         (
             ["replay", "nowhere.mcap"],

@@ -204,7 +204,7 @@ def test_what_the_command_accepts_the_machine_accepts(tmp_path):
         ([*options(POINTS), "--spindle", "s 1"], "P-ERR-27051 spindle name 's 1' must be lower-case letters, digits and _, beginning with a letter; nothing was fitted\n"),
         ([*options(POINTS), "--spindle", ""], "P-ERR-27051 spindle name '' must be lower-case letters, digits and _, beginning with a letter; nothing was fitted\n"),
         ([*options(POINTS), "--spindle", "plc"], "P-ERR-27051 spindle name 'plc' is taken by another node; nothing was fitted\n"),
-        ([*options(POINTS), "-o", "/nowhere/a.yaml"], "P-ERR-27030 /nowhere/a.yaml cannot be written: its folder does not exist; nothing was started\n"),
+        ([*options(POINTS), "-o", "/nowhere/a.yaml"], "P-ERR-27030 /nowhere/a.yaml cannot be written: there is no folder /nowhere, make it or give another name; nothing was started\n"),
     ],
 )  # fmt: skip
 def test_refused(arguments, text):

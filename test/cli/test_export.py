@@ -50,7 +50,7 @@ def test_a_window_of_some_fields(recording, tmp_path):
     ("name", "text"),
     [
         ("x.xlsx", "the file name of an export must end in .csv, .parquet or .npz; nothing was started"),
-        ("none/x.csv", "cannot be written: its folder does not exist; nothing was started"),
+        ("none/x.csv", "/none, make it or give another name; nothing was started"),
     ],
 )
 def test_outputs_that_cannot_be(recording, tmp_path, name, text):

@@ -243,7 +243,8 @@ def test_a_gain_near_the_limit_is_warned_about(tmp_path):
         ),
         (
             ["x", "--machine", MILL, "-o", "/nowhere/t.yaml"],
-            "P-ERR-27030 /nowhere/t.yaml cannot be written: its folder does not exist; nothing was started",
+            "P-ERR-27030 /nowhere/t.yaml cannot be written: there is no folder /nowhere, make it or give another name; "
+            "nothing was started",
         ),
         (
             ["x", "--machine", MILL, "-o", MILL],

@@ -122,7 +122,8 @@ def test_a_folder_that_is_not_there(tmp_path: Path) -> None:
     done = call("init", "ptp", "-o", str(file))
     assert (done.exit_code, done.stderr) == (
         2,
-        f"P-ERR-27030 {file} cannot be written: its folder does not exist; nothing was started\n",
+        f"P-ERR-27030 {file} cannot be written: there is no folder {file.parent}, make it or give another name; "
+        "nothing was started\n",
     )
 
 

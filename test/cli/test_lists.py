@@ -87,7 +87,7 @@ def test_an_output_that_is_there(small: Path, tmp_path: Path) -> None:
 def test_outputs_that_cannot_be(small: Path, tmp_path: Path) -> None:
     beside = tmp_path / "none" / "m.yaml"
     for output, text in (
-        (beside, f"{beside} cannot be written: its folder does not exist"),
+        (beside, f"{beside} cannot be written: there is no folder {beside.parent}, make it or give another name"),
         (tmp_path, f"{tmp_path} is a folder; name a file"),
         (
             small / "achs_mds_x.lis",
@@ -165,7 +165,10 @@ def test_an_export_does_not_mix_with_other_lists(tmp_path: Path) -> None:
     assert done.output == f"P-ERR-25045 {text}{END}"
     assert entries(folder) == before
     for output, reason in (
-        (tmp_path / "a" / "b", f"{tmp_path}/a/b cannot be written: its folder does not exist"),
+        (
+            tmp_path / "a" / "b",
+            f"{tmp_path}/a/b cannot be written: there is no folder {tmp_path}/a, make it or give another name",
+        ),
         (folder / "hochlauf.lis", f"{folder}/hochlauf.lis is a file; name a folder"),
     ):
         assert call("lists", "export", MILL, "-o", output).output == f"P-ERR-25045 {reason}{END}"

@@ -187,7 +187,10 @@ def test_wrong_usage(folder: Path) -> None:
     program = folder / "square.nc"
     for options, text in (
         (["--machine", folder / "no.yaml"], "no.yaml"),
-        (["--machine", MILL, "-o", folder / "no" / "p.html"], "cannot be written: its folder does not exist; nothing"),
+        (
+            ["--machine", MILL, "-o", folder / "no" / "p.html"],
+            f"there is no folder {folder}/no, make it or give another name; nothing",
+        ),
         (
             ["--machine", MILL, "-o", folder / "p.svg"],
             "p.svg: the file name of a report must end in .html; nothing was",

@@ -87,7 +87,11 @@ def test_something_must_run(tmp_path):
     ("output", "page", "text"),
     [
         ("sweep.csv", None, "{0}/sweep.csv: the file name of a sweep must end in .parquet"),
-        ("none/sweep.parquet", None, "{0}/none/sweep.parquet cannot be written: its folder does not exist"),
+        (
+            "none/sweep.parquet",
+            None,
+            "{0}/none/sweep.parquet cannot be written: there is no folder {0}/none, make it or give another name",
+        ),
         ("sweep.parquet", "sweep.txt", "{0}/sweep.txt: the file name of a report must end in .html"),
     ],
 )

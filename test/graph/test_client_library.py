@@ -99,7 +99,8 @@ def test_a_second_start_on_the_domain_is_refused(m, mill, ros_domain):
 
 
 def test_what_cannot_be_started(m, mill, folder):
-    text = f"recording {folder}/none/a.mcap cannot be written: No such file or directory; nothing was started"
+    why = f"there is no folder {folder}/none, make it or give another name"
+    text = f"recording {folder}/none/a.mcap cannot be written: {why}; nothing was started"
     assert refusal(lambda: Machine.start(mill, record=folder / "none" / "a.mcap", namespace="a"))[:2] == (26113, text)
     number, text, _ = refusal(lambda: Machine.start(mill, scenario=folder / "none.yaml", namespace="a", composed=True))
     assert (number, text) == (

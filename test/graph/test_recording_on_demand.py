@@ -201,5 +201,6 @@ def test_a_split_or_a_condition_that_is_wrong_starts_nothing(tmp_path):
     assert not [*tmp_path.iterdir()]
     missing = tmp_path / "none" / "snaps"
     assert run("run", PTP, "--duration", "1", "--keep", "1", "--snapshots", missing, expect=2).stderr == (
-        f"P-ERR-26113 recording {missing} cannot be written: No such file or directory; nothing was started\n"
+        f"P-ERR-26113 recording {missing} cannot be written: there is no folder {missing.parent}, make it or "
+        "give another name; nothing was started\n"
     )

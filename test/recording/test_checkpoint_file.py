@@ -135,7 +135,7 @@ def test_a_file_that_cannot_be_written(tmp_path: Path) -> None:
     result = call("replay", path, "--checkpoints", 1)
     assert (result.exit_code, " ".join(result.output.split())) == (
         2,
-        f"P-ERR-26007 recording {file}: cannot be created: Is a directory; nothing was written",
+        f"P-ERR-26007 recording {file} cannot be written: Is a directory; nothing was written",
     )
 
 

@@ -141,7 +141,7 @@ def test_a_full_disk_leaves_what_was_recovered_before(disk, tmp_path):
     output.write_bytes(MCAP0_MAGIC + b"former")
     leave(disk, 0)
     assert refusal(recover, source, output) == (
-        f"P-ERR-26007 recording {output}: cannot be written: {NO_SPACE}; nothing was written"
+        f"P-ERR-26007 recording {output} cannot be written: {NO_SPACE}; nothing was written"
     )
     assert output.read_bytes() == MCAP0_MAGIC + b"former" and len([*disk.iterdir()]) == 2
 
@@ -164,7 +164,7 @@ def test_a_full_disk_leaves_what_a_replay_has_recorded_before(disk, tmp_path):
     output.write_bytes(MCAP0_MAGIC + b"former")
     leave(disk, 8)
     assert told("replay", run, "--set", "x.getriebe.0.kv=8000", "-o", output) == (
-        f"P-ERR-26007 recording {output}: cannot be written: {NO_SPACE}; nothing was written"
+        f"P-ERR-26007 recording {output} cannot be written: {NO_SPACE}; nothing was written"
     )
     assert output.read_bytes() == MCAP0_MAGIC + b"former" and len([*disk.iterdir()]) == 2
 
@@ -185,7 +185,7 @@ def test_a_full_disk_has_no_room_for_checkpoints_beside_a_recording(large_disk):
     before = run.read_bytes()
     leave(large_disk, 0)
     assert told("replay", run, "--checkpoints", "1") == (
-        f"P-ERR-26007 recording {run}.checkpoints: cannot be written: {NO_SPACE}; nothing was written"
+        f"P-ERR-26007 recording {run}.checkpoints cannot be written: {NO_SPACE}; nothing was written"
     )
     assert sorted(file.name for file in large_disk.iterdir()) == ["fill", "metadata.yaml", "run.mcap"]
     assert run.read_bytes() == before

@@ -247,8 +247,8 @@ def test_an_own_snapshot_that_fails_is_an_event(tmp_path):
     [event] = story.published
     assert (event.severity, event.error_id) == (Severity.WARNING, 26195)
     assert event.text == (
-        f"recorder: snapshot {folder / 'error_990.mcap'} was not taken: recording {folder / 'error_990.mcap'}: cannot be "
-        "created: No such file or directory; the run continues"
+        f"recorder: snapshot {folder / 'error_990.mcap'} was not taken: recording {folder / 'error_990.mcap'} cannot be "
+        f"written: there is no folder {folder}, make it or give another name; the run continues"
     )
 
 
@@ -297,7 +297,8 @@ def test_files_that_cannot_be_written_are_refused(tmp_path, what):
     assert story.refused(call, str(tmp_path)).startswith(f"P-ERR-26192 {refused}: {tmp_path} exists;")
     missing = tmp_path / "missing" / "a.mcap"
     assert story.refused(call, str(missing)) == (
-        f"P-ERR-26113 {refused}: recording {missing} cannot be written: No such file or directory; nothing was changed"
+        f"P-ERR-26113 {refused}: recording {missing} cannot be written: there is no folder {missing.parent}, make it or give "
+        "another name; nothing was changed"
     )
     read_only = "/proc/self/a.mcap"  # root may write into any folder but this
     assert story.refused(call, read_only).startswith(

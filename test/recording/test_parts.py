@@ -355,7 +355,7 @@ def test_an_interruption_leaves_what_is_there(parts, tmp_path, monkeypatch, plac
             recover(parts, output)
     else:
         assert refusal(recover, parts, output) == (
-            f"P-ERR-26007 recording {output}: cannot be written: Input/output error; nothing was written"
+            f"P-ERR-26007 recording {output} cannot be written: Input/output error; nothing was written"
         )
     assert contents(output) == before
     assert [each.name for each in tmp_path.iterdir()] == ["saved"]
@@ -366,19 +366,20 @@ def test_a_disk_that_is_full_leaves_what_is_there(parts, tmp_path):
         output = disk / "saved"
         before = saved_before(output)
         assert refusal(recover, parts, output) == (
-            f"P-ERR-26007 recording {output}: cannot be written: No space left on device; nothing was written"
+            f"P-ERR-26007 recording {output} cannot be written: No space left on device; nothing was written"
         )
         assert contents(output) == before and [each.name for each in disk.iterdir()] == ["saved"]
-    text = "recording {}: {}: {}; nothing was written"
+    lacks = f"there is no folder {tmp_path / 'none'}, make it or give another name"
     good = tmp_path / "good"
     good.write_text("good")
     for source, output, number, what, reason in (
-        (parts, good, 26020, "no folder for its parts", "File exists"),
-        (parts, tmp_path / "none" / "saved", 26020, "no folder for its parts", "No such file or directory"),
-        (parts / "run_0.mcap", tmp_path / "none" / "a.mcap", 26007, "cannot be created", "No such file or directory"),
-        (parts / "run_0.mcap", tmp_path / "disk", 26007, "cannot be created", "Is a directory"),
+        (parts, good, 26020, ": no folder for its parts", "File exists"),
+        (parts, tmp_path / "none" / "saved", 26020, ": no folder for its parts", lacks),
+        (parts / "run_0.mcap", tmp_path / "none" / "a.mcap", 26007, " cannot be written", lacks),
+        (parts / "run_0.mcap", tmp_path / "disk", 26007, " cannot be written", "Is a directory"),
     ):
-        assert refusal(recover, source, output) == f"P-ERR-{number} {text.format(output, what, reason)}"
+        text = f"P-ERR-{number} recording {output}{what}: {reason}; nothing was written"
+        assert refusal(recover, source, output) == text
     assert good.read_text() == "good"
 
 

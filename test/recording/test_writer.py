@@ -350,7 +350,8 @@ def test_path_that_cannot_be_created(tmp_path):
     with pytest.raises(CncError) as error:
         Recording(path, MACHINE)
     assert str(error.value) == (
-        f"P-ERR-26007 recording {path}: cannot be created: No such file or directory; nothing is recorded"
+        f"P-ERR-26007 recording {path} cannot be written: there is no folder {path.parent}, make it or give another "
+        "name; nothing is recorded"
     )
 
 

@@ -89,6 +89,7 @@ def simulate(
 ) -> int:
     """Runs offline; prints a summary. Status 1 when a unit ended in error, with `strict` also for a refused command."""
     check_recording(record, machine_file=machine, NC_program=program, scenario=scenario, PLC_file=plc)
+    recorder.require_places(record)
     parameters = read_machine(machine)
     print_missing_folders(parameters)
     job = read_entries(parameters, program=program, scenario=scenario, dialect=dialect, begin=begin)
