@@ -28,6 +28,8 @@ WITHOUT = "not_computable"
 """Key: what is missing for the run to be computed again from 0, if anything."""
 COMPUTABLE_FROM = "computable_from"
 """Key: from which cycle on nothing is missing; a checkpoint at or behind it is a beginning."""
+WHAT_IF_OF = "what_if_of"
+"""Key: the recording whose run was changed."""
 PART = "part"
 """Key: the number of a file of several, from 0 on."""
 TIMES = {"start_ns": 0, "cycle_time_ns": 1}
@@ -120,7 +122,7 @@ def foreign(path: Path, effect: str) -> CncError:
 def require_computable(path: Path, metadata: Mapping[str, str]) -> None:
     """Raises CncError 26018 for a recording that says that something is missing for it."""
     if WITHOUT in metadata:
-        raise not_computable(path, metadata[WITHOUT])
+        raise not_computable(path, metadata[WITHOUT], metadata.get(WHAT_IF_OF, ""))
 
 
 def computable_from(path: Path, metadata: Mapping[str, str]) -> int:
@@ -132,6 +134,6 @@ def computable_from(path: Path, metadata: Mapping[str, str]) -> int:
     return 0
 
 
-def not_computable(path: Path, why: str) -> CncError:
-    effect = "the run cannot be computed again, its states can be read and drawn"
-    return CncError(NOT_COMPUTABLE, f"recording {path}: {why}", effect)
+def not_computable(path: Path, why: str, what_if_of: str = "") -> CncError:
+    remedy = f"replay {what_if_of} with all changes" if what_if_of else "its states can be read and drawn"
+    return CncError(NOT_COMPUTABLE, f"recording {path}: {why}", f"the run cannot be computed again, {remedy}")

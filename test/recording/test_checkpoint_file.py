@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner, Result
+from long_support import long
 from machine_support import ROOT
 
 from cnc_ptp import cli
@@ -43,7 +44,7 @@ def simulated(path: Path, *options: object, program: str = PROGRAM, checkpoints:
     return path
 
 
-@pytest.mark.parametrize("options", [(), ("--split", "2s"), ("--record-when", "x.set_position > 20")], ids=str)
+@pytest.mark.parametrize("options", [("--split", "2s"), ("--record-when", "x.set_position > 20"), *long([()])], ids=str)
 def test_a_replay_begins_at_a_checkpoint_of_the_file(options: tuple[object, ...], tmp_path: Path) -> None:
     path = simulated(tmp_path / ("parts" if "--split" in options else "run.mcap"), *options)
     file = path.with_name(f"{path.name}.checkpoints")
@@ -172,7 +173,7 @@ def test_a_changed_run_is_not_computed_again(tmp_path: Path) -> None:
     result = call("replay", new, "--from", 3)
     assert " ".join(result.output.split()) == (
         f"P-ERR-26018 recording {new}: it is what became of run.mcap from cycle 2000 on, what was before is there; "
-        "the run cannot be computed again, its states can be read and drawn"
+        "the run cannot be computed again, replay run.mcap with all changes"
     )
     whole = tmp_path / "whole.mcap"
     assert call("replay", path, "--set", "x.getriebe.0.kv=8000", "-o", whole).exit_code == 0
@@ -201,7 +202,7 @@ def test_long_replays_show_their_progress(tmp_path: Path, monkeypatch: pytest.Mo
 
     for module in ("replay", "what_if"):
         monkeypatch.setattr(f"cnc_ptp.commands.run.{module}.RunProgress", Watched)
-    path = simulated(tmp_path / "run.mcap")
+    path = simulated(tmp_path / "run.mcap", program="G01 X50 F2400\nX0\nM30\n")
     every = [*range(0, read_recording(path).last_cycle + 1, 10)]
     for words in ((), ("--checkpoints", 1), ("--from", 0, "-o", tmp_path / "new.mcap")):
         shown.clear()

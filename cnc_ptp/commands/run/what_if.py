@@ -22,7 +22,7 @@ from cnc_ptp.plc.scenario import Entry, parse_scenario
 from cnc_ptp.protocol.blocks import CommandRecord
 from cnc_ptp.recording.new_recording import in_place_of
 from cnc_ptp.recording.offline_run import write
-from cnc_ptp.recording.origin import WITHOUT, origin
+from cnc_ptp.recording.origin import WHAT_IF_OF, WITHOUT, origin
 from cnc_ptp.recording.overwriting import check_recording
 from cnc_ptp.recording.parts import describe_file
 from cnc_ptp.recording.run_inputs import RunInputs
@@ -90,7 +90,7 @@ def nothing_collected() -> Iterator[None]:
 
 def compute(run: WhatIf, recorded: RunInputs, path: Path) -> None:
     """Records the run."""
-    notes = {"what_if_of": recorded.path.name, **origin()}
+    notes = {WHAT_IF_OF: recorded.path.name, **origin()}
     if run.begin:
         notes[WITHOUT] = (
             f"it is what became of {recorded.path.name} from cycle {run.begin} on, what was before is there"
