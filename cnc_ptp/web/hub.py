@@ -51,6 +51,8 @@ class Hub:
         self.shared: View | None = None
         """Of all pages of a machine that runs."""
         self._views: list[View] = []
+        self._is_recording = False
+        """What was shown last."""
         self.why_none = WAITING
         """Why there is no machine now."""
         self._tasks: list[asyncio.Task[None]] = []
@@ -90,7 +92,7 @@ class Hub:
                 await asyncio.sleep(AGAIN)
             except Exception as error:  # a mistake of ours: pages get a message, and it is tried again
                 traceback.print_exc()
-                self.face, self.why_none = None, server_failed(error)
+                self.face, self.why_none = None, self._failed(error)
                 await asyncio.sleep(AGAIN)
 
     async def _live_with(self, face: Face) -> None:
@@ -103,14 +105,14 @@ class Hub:
                 self._tell()
             running.result()
         except Exception as error:  # also a mistake of ours must not leave pages that show the past
-            self._tell_gone(error if isinstance(error, CncError) else server_failed(error))
+            self._tell_gone(error if isinstance(error, CncError) else self._failed(error))
             await asyncio.to_thread(face.close)
             raise
         finally:
             running.cancel()
 
     def _begin_with(self, face: Face) -> None:
-        self.face, self._views = face, []
+        self.face, self._views, self._is_recording = face, [], face.is_recording
         self.programs = ProgramWatch(self.folder, is_recording=face.is_recording)
         self.programs.take_state({}, face.last_loads())
         self.shared = None if face.is_recording else self._view(face, self.programs)
@@ -118,6 +120,10 @@ class Hub:
             self._show(session, face)
             session.send({"type": "back"})
             session.send(self.hello(session))
+
+    def _failed(self, error: Exception) -> CncError:
+        continues = "the recording is opened again" if self._is_recording else "the machine continues"
+        return CncError(GONE, f"the server has failed: {error!r}", continues)
 
     def _tell_gone(self, error: CncError) -> None:
         self.face, self.why_none = None, error
@@ -205,7 +211,3 @@ class Hub:
             number = GONE if self.why_none.number == GONE else NO_MACHINE_YET
             raise CncError(number, self.why_none.reason, "nothing was sent")
         return self.face
-
-
-def server_failed(error: Exception) -> CncError:
-    return CncError(GONE, f"the server has failed: {error!r}", "the machine continues")

@@ -9,7 +9,7 @@ from recording_support import smooth_blocks
 from web_support import MILL, site
 
 from cnc_ptp.client import Machine
-from cnc_ptp.commands.run.web import connector
+from cnc_ptp.commands.run.web import connector, print_address
 from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import CommandRecord, Event
 from cnc_ptp.recording.opened import OpenRecording
@@ -83,6 +83,25 @@ def test_a_page_looks_at_any_time_and_plays(recording):
             assert text == "G1 X10 F600\nX20\nM30\n"
 
     asyncio.run(story())
+
+
+def test_a_mistake_of_ours_is_told_without_a_machine(recording, monkeypatch, capsys):
+    async def story():
+        async with site(connect=lambda: recorded_face(recording)) as here:
+            page = await here.page(commands=False)
+            monkeypatch.setattr(here.hub, "_tell", lambda: 1 / 0)
+            gone = await page.wait_for("gone")
+            text = "the server has failed: ZeroDivisionError('division by zero'); the recording is opened again"
+            assert (gone["number"], gone["text"]) == (26171, text)
+
+    asyncio.run(story())
+    assert "ZeroDivisionError" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("is_recording", "more"), [(True, ""), (False, "; the machine continues")])
+def test_the_address_tells_what_continues(is_recording, more, capsys):
+    print_address("http://localhost:8080", is_recording=is_recording)
+    assert capsys.readouterr().out == f"pages: http://localhost:8080 (Ctrl-C ends them{more})\n"
 
 
 def test_its_samples_and_its_parameters(recording):

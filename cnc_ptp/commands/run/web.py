@@ -8,7 +8,7 @@ import select
 import socket
 import sys
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 
 from cnc_ptp.nodes.forked import end_with
 from cnc_ptp.ros_arguments import ros_arguments
@@ -46,7 +46,8 @@ def web(
         end_with(sys.stdin.fileno())
         if select.select([sys.stdin], [], [], 0.0)[0]:
             return 0  # the run has ended before the signal was ordered
-    asyncio.run(serve(connector(recording), options, taken, words=words_of, tell=print_address))
+    tell = partial(print_address, is_recording=recording is not None)
+    asyncio.run(serve(connector(recording), options, taken, words=words_of, tell=tell))
     return 0
 
 
@@ -74,5 +75,6 @@ def words_of(dialect: str) -> list[tuple[str, str]]:
     ]
 
 
-def print_address(address: str) -> None:
-    print(f"pages: {address} (Ctrl-C ends them; the machine continues)", flush=True)
+def print_address(address: str, *, is_recording: bool) -> None:
+    continues = "" if is_recording else "; the machine continues"
+    print(f"pages: {address} (Ctrl-C ends them{continues})", flush=True)
