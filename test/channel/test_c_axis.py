@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from itertools import pairwise
 
+import numpy as np
 import pytest
 from c_axis_support import LATHE, assert_within_limits, errors, on_path, run
 from machine_support import ROOT, MachineBench
@@ -31,13 +32,12 @@ ROUNDING = 1e-9
 def assert_follows(bench: MachineBench) -> None:
     """The spindle is where the C axis is, in every cycle (deg), once the path has taken it over."""
     cycles = on_path(bench)
-    angle = bench.column("s", "set_position_deg")
-    travel = [value for block in bench.blocks["channel"] for value in block.spindle_travel]
+    angle = np.array(bench.column("s", "set_position_deg"))
+    travel = np.array([value for block in bench.blocks["channel"] for value in block.spindle_travel])
     first = next(block.first_cycle for block in bench.blocks["channel"] if block.path_spindles)
     assert cycles
-    for cycle in cycles:
-        if first <= cycle < first + len(travel):
-            assert angle[cycle] - angle[cycles[0]] == pytest.approx(travel[cycle - first], abs=ROUNDING)
+    led = np.array([cycle for cycle in cycles if first <= cycle < first + len(travel)])
+    assert angle[led] - angle[cycles[0]] == pytest.approx(travel[led - first], abs=ROUNDING)
 
 
 def spindle_jerk(bench: MachineBench) -> float:
@@ -201,6 +201,7 @@ def test_replay_gives_the_same_again() -> None:
         assert again[unit] == first[unit]
 
 
+@pytest.mark.long
 def test_example() -> None:
     """Holes, hexagon, groove past the centre, letters; the spindle turns again at its end."""
     program = (ROOT / "examples" / "caxis.nc").read_text()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import pytest
 from channel_spindle_support import MVS_SLM, MVS_SLP, machine_of, three
 from machine_support import MILL, MachineBench
 from replay_support import bits, replay
@@ -57,6 +58,7 @@ def rich_run() -> MachineBench:
     return MachineBench(FIRST, SCENARIO, machine=machine()).run()
 
 
+@pytest.mark.long
 def test_two_runs_are_bit_identical() -> None:
     first, second = rich_run(), rich_run()
     assert bits(first) == bits(second) and first.records == second.records and first.events == second.events

@@ -20,6 +20,7 @@ from channel_spindle_support import (
     told,
     two_channels,
 )
+from long_support import long
 from machine_support import MILL, MachineBench
 from spindle_support import RPM, two_gears
 
@@ -317,7 +318,7 @@ def test_a_slave_does_not_start_while_the_reset_decouples_it(at: float) -> None:
 
 
 @pytest.mark.parametrize("again", ["master: s", "master: u"])
-@pytest.mark.parametrize("at", [1.0, 1.1])
+@pytest.mark.parametrize("at", [1.0, *long([1.1])])
 @pytest.mark.parametrize("end", ["", "#DISABLE AX LINK[1]"])
 def test_a_coupling_of_people_is_none_of_the_program(again: str, at: float, end: str) -> None:
     """They have ended that of the program and made their own; the program does not wait for its end."""

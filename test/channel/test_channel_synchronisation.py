@@ -25,6 +25,7 @@ from channel_spindle_support import (
     told,
     told_at,
 )
+from long_support import long
 from machine_support import MILL, MachineBench
 
 from cnc_ptp.parameters import MachineParameters, Synchronisation
@@ -52,7 +53,7 @@ def with_h(number: int, kind: Synchronisation) -> MachineParameters:
     return replace(MILL, channels={"channel": replace(channel, h_functions={number: kind})})
 
 
-@pytest.mark.parametrize("acknowledged_at", [0.95, 0.953, 1.2])
+@pytest.mark.parametrize("acknowledged_at", [0.953, *long([0.95, 1.2])])
 @pytest.mark.parametrize("function", ["M03 S600", "H5"])
 @pytest.mark.parametrize(
     ("kind", "first_held"),

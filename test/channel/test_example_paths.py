@@ -11,6 +11,7 @@ from itertools import chain, islice
 from pathlib import Path
 
 import pytest
+from long_support import long, long_sets
 from machine_support import MachineBench
 from program_segments import findings
 
@@ -19,14 +20,13 @@ from cnc_ptp.nc.faults import ProgramError
 MILL = "config/mill.yaml"
 LATHE = "config/lathe.yaml"
 PAIRS = [
-    *((MILL, f"examples/{name}") for name in ("bracket.nc", "cover.nc", "pocket.nc")),
-    *((LATHE, f"examples/threads/{name}.nc") for name in ("chain", "longitudinal", "taper", "two_starts")),
-    *((LATHE, f"examples/{name}.nc") for name in ("turning", "lathe")),
-    *((LATHE, f"examples/manual/{name}.nc") for name in ("longitudinal_thread", "two_starts", "tapered_thread")),
+    (MILL, "examples/pocket.nc"),
+    *((LATHE, f"examples/threads/{name}.nc") for name in ("chain", "taper", "two_starts")),
+    *((LATHE, f"examples/manual/{name}.nc") for name in ("two_starts", "tapered_thread")),
     (MILL, "examples/manual/tapping.nc"),
     ("examples/probe.yaml", "examples/probe.nc"),
     *((MILL, f"examples/figures/path_{name}.nc") for name in ("corners", "velocity")),
-    *((MILL, f"examples/figures/control_circle{name}.nc") for name in ("", "_feedforward")),
+    (MILL, "examples/figures/control_circle_feedforward.nc"),
     *(("examples/spindles/nc_spindle.yaml", f"examples/spindles/{name}.nc") for name in ("din", "brackets")),
     *(
         ("examples/spindles/synchronisation.yaml", f"examples/spindles/{name}.nc")
@@ -39,8 +39,10 @@ PAIRS = [
     ("examples/spindles/two_channels.yaml", "examples/spindles/channel1.nc"),
 ]
 LONG = [
-    *((MILL, f"examples/{name}") for name in ("tapping.nc", "plate.ngc", "manual/tapping_twice.nc")),
-    *((LATHE, f"examples/{name}.nc") for name in ("thread", "caxis", "turned_part")),
+    *((MILL, f"examples/{name}") for name in ("bracket.nc", "cover.nc", "tapping.nc", "plate.ngc")),
+    *((MILL, f"examples/{name}.nc") for name in ("manual/tapping_twice", "figures/control_circle")),
+    *((LATHE, f"examples/{name}.nc") for name in ("thread", "caxis", "turned_part", "turning", "lathe")),
+    *((LATHE, f"examples/{name}.nc") for name in ("threads/longitudinal", "manual/longitudinal_thread")),
 ]
 CYCLES = {
     81: "G81[-5, 2]", 82: "G82[-5, 2, 0.1]", 83: "G83[-9, 2, 4]", 84: "S200 G84[-8, 2, 1.25, 0.1]", 85: "G85[-5, 2]", 86: "M03 S500\nG86[-5, 2]\nM05", 89: "G89[-5, 2, 0.1]",
@@ -49,14 +51,14 @@ CYCLES = {
 
 @pytest.mark.parametrize(
     ("machine", "program"),
-    [*PAIRS, *(pytest.param(*pair, marks=pytest.mark.long) for pair in LONG)],
+    [*PAIRS, *long_sets(LONG)],
     ids=lambda name: Path(name).stem,
 )
 def test_an_example_keeps_to_its_path_and_the_axes_to_their_limits(machine: str, program: str) -> None:
     assert findings(machine, program) == []
 
 
-@pytest.mark.parametrize("part", ["pocket", "surface"])
+@pytest.mark.parametrize("part", ["surface", *long(["pocket"])])
 def test_chords_of_a_cam_contour(part: str, tmp_path: Path) -> None:
     """Parts of the 150,000 blocks of examples/contour.py: rings with round and sharp corners, rows over the hill."""
     contour = runpy.run_path("examples/contour.py")

@@ -20,6 +20,7 @@ from c_axis_support import (
     on_path,
     run,
 )
+from long_support import long
 from machine_support import MachineBench
 from replay_support import bits, replay
 from shapely import LinearRing, box
@@ -91,7 +92,7 @@ def test_arc_around_the_centre_moves_the_spindle_alone() -> None:
     assert all(x == pytest.approx(20.0, abs=1e-9) for x, _, _ in path[-500:])
 
 
-@pytest.mark.parametrize("beside", [5.0, 0.5, 0.05, 0.005, 0.0005])
+@pytest.mark.parametrize("beside", [5.0, 0.05, 0.0005, *long([0.5, 0.005])])
 def test_past_the_centre(beside: float) -> None:
     """The path slows down by itself."""
     bench = run(on_face(f"G01 C{beside} F2000\nX-20"))
@@ -290,6 +291,7 @@ def test_manual_blocks_end_a_kinematics() -> None:
     assert [offsets.systems for block in bench.blocks["channel"] for offsets in block.offsets][-1] == []
 
 
+@pytest.mark.long
 def test_replay_gives_the_same_again() -> None:
     bench = run(on_face(lines(HEXAGON)), "- {at: 2.0, to: channel, do: set_override, percent: 40}")
     again, first = replay(bench.machine, bench.records, len(bench.blocks["plc"])), bits(bench)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from long_support import long, long_sets
 from machine_support import MachineBench
 from path_superposition_support import PathBench, assert_no_jump, expected, mill, profile
 from replay_support import bits, replay
@@ -32,7 +33,7 @@ def on_path(way: float = 60.0, velocity: float = 15.0, *, program: str | None = 
 # the sum
 
 
-@pytest.mark.parametrize(("way", "velocity"), [(60.0, 15.0), (-45.0, 9.0), (120.0, 31.25)])
+@pytest.mark.parametrize(("way", "velocity"), [(-45.0, 9.0), *long_sets([(60.0, 15.0), (120.0, 31.25)])])
 def test_a_circle_on_a_moving_workpiece(way: float, velocity: float) -> None:
     """Seen from the workpiece, which the external setpoints move, the tool runs the circle of 20 mm."""
     bench, alone = PathBench().run(0.5), PathBench().run(0.51)
@@ -65,7 +66,7 @@ def test_states_and_bits() -> None:
     assert_no_jump(bench, acceleration=ACCELERATION)
 
 
-@pytest.mark.parametrize("milliseconds", [800, 2500, 3300])
+@pytest.mark.parametrize("milliseconds", [2500, *long([800, 3300])])
 def test_disable_brakes_the_contribution_alone(milliseconds: int) -> None:
     """On the ramp of the axis, without the path: 15² / (2·2000) + v·A/(2·J), and what is left stays."""
     bench = on_path()
@@ -190,7 +191,7 @@ def test_blocks_go_on_beside_the_offset_without_a_jump() -> None:
 # what ends it
 
 
-@pytest.mark.parametrize("milliseconds", [600, 2300, 3900])
+@pytest.mark.parametrize("milliseconds", [2300, *long([600, 3900])])
 def test_a_reset_of_the_channel_leaves_the_external_setpoints(milliseconds: int) -> None:
     """They continue as they do without a path, to their own end."""
     bench = on_path(way=90.0)
@@ -241,7 +242,7 @@ def assert_stops(bench: PathBench, text: str, error: int, *, acceleration: float
     assert_no_jump(bench, acceleration=acceleration)
 
 
-@pytest.mark.parametrize("cycle", range(3100, 3110))
+@pytest.mark.parametrize("cycle", [3100, 3105, 3109, *long((3101, 3102, 3103, 3104, 3106, 3107, 3108))])
 def test_silence(cycle: int) -> None:
     """Wherever in a block it is found, and while both parts move."""
     bench = PathBench().run(2.9)

@@ -47,6 +47,7 @@ def test_the_setpoints_keep_the_distance_of_the_radius() -> None:
     assert np.abs(distances(EDGES, points) - 5.0).max() < 1e-6
 
 
+@pytest.mark.long
 def test_the_example_runs() -> None:
     bench = MachineBench(COVER.read_text()).run()
     assert bench.errors() == [] and bench.last("channel").done

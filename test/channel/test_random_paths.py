@@ -15,7 +15,7 @@ from random_paths import RandomProgram
 AXIS = Axis(100.0, 100.0, 1000.0, 1000.0, 20_000.0)
 
 
-@pytest.mark.parametrize("seed", [*range(3), *long(range(3, 20))])
+@pytest.mark.parametrize("seed", [2, *long([0, 1, *range(3, 20)])])
 def test_random_programs(seed: int) -> None:
     assert RandomProgram(seed).check().texts == []
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
 import pytest
+from long_support import long, long_sets
 from machine_support import MILL, MachineBench, spindle_bench
 from replay_support import bits, replay
 
@@ -40,17 +42,16 @@ def on_path(bench: MachineBench) -> list[int]:
 
 def assert_follows(bench: MachineBench, degrees_per_mm: float = DEGREES_PER_MM) -> None:
     """Where the path moves the spindle, its angle is that of the path, downwards positive."""
-    angle, depth = bench.column("s", "set_position_deg"), bench.column("z", "set_position")
-    speed, velocity = bench.column("s", "set_speed_rpm"), bench.column("z", "set_velocity")
+    angle, speed = (np.array(bench.column("s", name)) for name in ("set_position_deg", "set_speed_rpm"))
+    depth, velocity = (np.array(bench.column("z", name)) for name in ("set_position", "set_velocity"))
     cycles = on_path(bench)
     assert cycles
     stretches = [0, *[n + 1 for n, (one, other) in enumerate(pairwise(cycles)) if other != one + 1], len(cycles)]
     for begin, end in pairwise(stretches):
-        first = cycles[begin]
-        for cycle in cycles[begin:end]:
-            turned = angle[cycle] - angle[first]
-            assert turned == pytest.approx(-degrees_per_mm * (depth[cycle] - depth[first]), abs=FOLLOWS)
-            assert speed[cycle] * 6.0 == pytest.approx(-degrees_per_mm * velocity[cycle], abs=FOLLOWS)
+        inside, first = cycles[begin:end], cycles[begin]
+        turned = angle[inside] - angle[first]
+        assert turned == pytest.approx(-degrees_per_mm * (depth[inside] - depth[first]), abs=FOLLOWS)
+        assert speed[inside] * 6.0 == pytest.approx(-degrees_per_mm * velocity[inside], abs=FOLLOWS)
 
 
 def tapping_speed(bench: MachineBench) -> float:
@@ -79,7 +80,7 @@ def test_spindle_follows_the_path() -> None:
     assert bench.column("s", "state").count(S.SYNCHRONIZED_MOTION) == len(on_path(bench))
 
 
-@pytest.mark.parametrize("percent", [30, 100, 120])
+@pytest.mark.parametrize("percent", [100, 120, *long([30])])
 def test_path_override_acts_on_both(percent: int) -> None:
     bench = run(scenario=f"- {{at: 0.0, to: channel, do: set_override, percent: {percent}}}")
     assert_follows(bench)
@@ -95,7 +96,7 @@ def test_spindle_override_acts_on_both() -> None:
     assert tapping_speed(bench) == pytest.approx(80.0, rel=1e-9)
 
 
-@pytest.mark.parametrize("at", [2.0, 3.3, 5.5, 8.0])
+@pytest.mark.parametrize("at", [3.3, *long([2.0, 5.5, 8.0])])
 def test_feed_hold_stops_both_and_lets_both_continue(at: float) -> None:
     scenario = f"""- {{at: {at}, to: channel, do: feed_hold, enabled: true}}
 - {{at: {at + 1.0}, to: channel, do: feed_hold, enabled: false}}"""
@@ -206,9 +207,7 @@ def test_spindle_that_others_turn_is_refused() -> None:
     [
         ("start", {"direction": "cw", "speed_rpm": 100.0}),
         ("stop", {}),
-        ("orient", {"position_deg": 0.0}),
-        ("home", {}),
-        ("reset", {}),
+        *long_sets([("orient", {"position_deg": 0.0}), ("home", {}), ("reset", {})]),
     ],
 )
 def test_commands_to_a_spindle_on_the_path_are_refused(command: str, arguments: dict[str, object]) -> None:
@@ -282,13 +281,12 @@ M30
     bench = MachineBench(program, machine=machine).run()
     assert bench.events == []
     numbers = bench.column("channel", "block_number")
-    tool, workpiece = bench.column("s2", "set_position_deg"), bench.column("s1", "set_position_deg")
-    x = bench.column("x", "set_position")
+    tool, workpiece = (np.array(bench.column(spindle, "set_position_deg")) for spindle in ("s2", "s1"))
+    x = np.array(bench.column("x", "set_position"))
     cycles = [cycle for cycle, number in enumerate(numbers) if number in (40, 50)]
     begin = cycles[0]
-    for cycle in cycles:
-        turned = (tool[cycle] - workpiece[cycle]) - (tool[begin] - workpiece[begin])
-        assert turned == pytest.approx(-DEGREES_PER_MM * (x[cycle] - x[begin]), abs=FOLLOWS)
+    turned = (tool - workpiece)[cycles] - (tool - workpiece)[begin]
+    assert turned == pytest.approx(-DEGREES_PER_MM * (x[cycles] - x[begin]), abs=FOLLOWS)
     assert min(bench.column("s2", "set_speed_rpm")[begin : cycles[-1]]) == pytest.approx(100.0)
     assert max(bench.column("s2", "set_speed_rpm")[begin : cycles[-1]]) == pytest.approx(500.0)
 
@@ -302,7 +300,7 @@ def test_replay_gives_the_same_again() -> None:
 
 
 @pytest.mark.parametrize("behind", ["", "G01 X10 F2000\n", "G04 0.1\n", "G63 Z-2 F250 S200\nZ5 S-200\n"])
-@pytest.mark.parametrize("feed", [125, 250, 333])
+@pytest.mark.parametrize("feed", [333, *long([125, 250])])
 def test_the_spindle_ends_where_the_path_does(feed: int, behind: str) -> None:
     """Also where the path comes to rest within the last cycle of a block: hole after hole begins at the same angle."""
     bench = run(f"G00 Z5\nM19 S.POS=90 S300\nG63 Z-5 F{feed} S{feed * 0.8}\nZ5 S-{feed * 0.8}\n{behind}M30")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
 import pytest
 from machine_support import MILL, MachineBench
 
@@ -45,23 +46,20 @@ def run_out(bench: MachineBench, source: str = "channel", *, units: tuple[str, .
 
 def assert_in_step(bench: MachineBench, begin: int) -> None:
     """From the block `begin` to the standstill, with the limits of axis and spindle."""
-    angle, depth = bench.column("s", "set_position_deg"), bench.column("z", "set_position")
-    velocity, acceleration = bench.column("z", "set_velocity"), bench.column("z", "set_acceleration")
     first = begin * BLOCK - 1
-    for cycle in range(first, len(depth)):
-        turned = angle[cycle] - angle[first]
-        assert turned == pytest.approx(-360.0 / PITCH * (depth[cycle] - depth[first]), abs=OFF_DEG)
+    angle = np.array(bench.column("s", "set_position_deg")[first:])
+    depth, velocity, acceleration = (
+        np.array(bench.column("z", f"set_{name}")[first:]) for name in ("position", "velocity", "acceleration")
+    )
+    assert angle - angle[0] == pytest.approx(-360.0 / PITCH * (depth - depth[0]), abs=OFF_DEG)
     z, s = MILL.axes["z"], MILL.spindles["s"]
     gear = s.gears[s.path_gear or s.gear]
-    assert max(map(abs, acceleration[first:])) <= max(z.acceleration, z.deceleration) * (1.0 + 1e-9)
+    assert np.abs(acceleration).max() <= max(z.acceleration, z.deceleration) * (1.0 + 1e-9)
     rates = bench.column("s", "set_acceleration_deg_s2")[first:]
     assert max(map(abs, rates)) <= max(gear.acceleration, gear.deceleration) * (1.0 + 1e-9)
-    for one, other in zip(acceleration[first:], acceleration[first + 1 :], strict=False):
-        assert abs(other - one) <= z.jerk * CYCLE_TIME * (1.0 + 1e-9)
-    for cycle in range(first, len(depth) - 1):
-        mean = 0.5 * (velocity[cycle] + velocity[cycle + 1])
-        bound = z.jerk * CYCLE_TIME**3 + 1e-9
-        assert depth[cycle + 1] - depth[cycle] == pytest.approx(mean * CYCLE_TIME, abs=bound)
+    assert np.abs(np.diff(acceleration)).max() <= z.jerk * CYCLE_TIME * (1.0 + 1e-9)
+    mean = 0.5 * (velocity[1:] + velocity[:-1])
+    assert np.diff(depth) == pytest.approx(mean * CYCLE_TIME, abs=z.jerk * CYCLE_TIME**3 + 1e-9)
     assert velocity[-1] == 0.0 and bench.column("s", "set_speed_rpm")[-1] == 0.0
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from example_support import ExampleRun
+from long_support import long
 from machine_support import ROOT
 from thread_support import Pass, apart, assert_within_limits, texts
 
@@ -17,7 +18,9 @@ def run(path: Path) -> ExampleRun:
     return ExampleRun(str(ROOT / "config" / "lathe.yaml"), str(path))
 
 
-@pytest.mark.parametrize("path", [*EXAMPLES, ROOT / "examples" / "thread.nc"], ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "path", [*EXAMPLES[1:], *long([EXAMPLES[0], ROOT / "examples" / "thread.nc"])], ids=lambda path: path.stem
+)
 def test_it_runs_without_a_warning(path):
     bench = run(path)
     assert_within_limits(bench)

@@ -11,6 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from long_support import long_sets
 from thread_support import LATHE, MACHINE, Pass, apart, column, cut
 
 from cnc_ptp.parameters import MachineParameters
@@ -77,7 +78,8 @@ def test_5_micrometres_are_out_of_reach_with_18000_deg_per_s2():
 
 @pytest.mark.parametrize("command", ["do: set_override, percent: 0", "do: stop", "do: power, enabled: false"])
 @pytest.mark.parametrize(
-    ("machine", "lead", "block_cycles"), [(LATHE, 1.5, 10), (FAST, 1.5, 10), (FAST, 10.0, 10), (FAST, 6.0, 4)]
+    ("machine", "lead", "block_cycles"),
+    [(LATHE, 1.5, 10), (FAST, 6.0, 4), *long_sets([(FAST, 1.5, 10), (FAST, 10.0, 10)])],
 )
 def test_the_path_comes_to_rest_where_its_spindle_does(machine, lead, block_cycles, command):
     """In the groove, without a step of acceleration and without turning back."""

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from long_support import long, long_sets
 from machine_support import MachineBench
 from thread_support import HEAD, LATHE, NO_RETRACT, Pass, apart, assert_within_limits, column, cut, lathe, texts
 
@@ -67,7 +68,7 @@ def test_taper_and_face():
 # disturbances
 
 
-@pytest.mark.parametrize("milliseconds", [0, 3, 7])
+@pytest.mark.parametrize("milliseconds", [3, *long([0, 7])])
 def test_a_speed_that_dips_by_10_percent(milliseconds):
     at = 3.0 + milliseconds / 1000.0
     scenario = f"- {{at: {at}, to: s, do: set_override, percent: 90}}\n- {{at: {at + 1.5}, to: s, do: set_override, percent: 100}}"
@@ -129,7 +130,7 @@ def test_a_chain_with_other_pitches_directions_and_angles_has_no_stop():
         start, angle_before = (x, z), angle_before + turns
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", [1, *long([2])])
 def test_random_chains_keep_the_limits_of_the_axes_while_the_speed_changes(seed):
     source = random.Random(seed)
     x, z, blocks = 36.0, 105.0, []
@@ -245,7 +246,9 @@ def test_what_ends_a_thread_before_its_end(command, reason, without, retracts):
         assert abs(phases - np.median(phases)).max() * 1.5 / 360.0 < 0.005
 
 
-@pytest.mark.parametrize(("command", "end"), [("X-4", 32.0), ("X[2 * 3]", 42.0), ("Z3", 36.0), ("OFF", 36.0)])
+@pytest.mark.parametrize(
+    ("command", "end"), [("X-4", 32.0), ("OFF", 36.0), *long_sets([("X[2 * 3]", 42.0), ("Z3", 36.0)])]
+)
 def test_a_program_says_how_the_tool_leaves_its_threads(command, end):
     """In a bore towards the centre; the path follows the spindle meanwhile as with the retract of the machine."""
     bench = cut(f"#THREAD RETRACT {command}\n{THREAD}", "- {at: 3.0, to: channel, do: reset}")

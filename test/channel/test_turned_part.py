@@ -17,6 +17,8 @@ from numpy.typing import NDArray
 from shapely import LineString, MultiLineString, Polygon
 from thread_support import assert_within_limits, column, texts
 
+pytestmark = pytest.mark.long
+
 Floats = NDArray[np.float64]
 MICROMETRE = 1e-3
 ZERO = 100.0
@@ -83,7 +85,6 @@ def finished_contour() -> LineString:
     return LineString([*corners, *edge, (-62.0, 22.0), (-66.0, 26.0)])
 
 
-@pytest.mark.long
 def test_finished_diameters(part: ExampleRun) -> None:
     """The nose touches the contour everywhere and is never in it: 20, 30 and 44 mm, chamfers, the edge of 2 mm."""
     x, z = tip(part, 62.0, 40.5)

@@ -7,6 +7,7 @@ from math import pi
 
 import pytest
 from channel_spindle_support import machine_of, three
+from long_support import long
 from machine_support import ROOT, MachineBench, assert_axes_smooth, machine
 from replay_support import bits, replay
 
@@ -130,7 +131,7 @@ def test_what_the_program_waits_for_names_the_spindle() -> None:
     assert bench.units["channel"].waits_for() == "channel channel waits in line 4 for spindle s to turn (G95)"
 
 
-@pytest.mark.parametrize("at", [2.5, 4.0])
+@pytest.mark.parametrize("at", [4.0, *long([2.5])])
 def test_spindle_override_0_and_feed_hold_stop_the_path(at: float) -> None:
     scenario = f"""- {{at: {at}, to: s, do: set_override, percent: 0}}
 - {{at: {at + 1.0}, to: s, do: set_override, percent: 100}}
@@ -219,7 +220,7 @@ def test_few_commands_where_the_diameter_stays() -> None:
     assert set_speeds(bench)[0] == pytest.approx(set_speeds(bench)[1])
 
 
-@pytest.mark.parametrize("synchronisation", ["MVS_SVS", "MVS_SNS", "MVS_SLM", "NO_SYNCH"])
+@pytest.mark.parametrize("synchronisation", ["MVS_SLM", "NO_SYNCH", *long(["MVS_SVS", "MVS_SNS"])])
 def test_no_synchronisation_stops_the_path_in_the_cut(synchronisation: str) -> None:
     """S of G96 is waited for at most once; what follows the facing axis is not."""
     main, driven = LATHE.channels["channel"].spindles

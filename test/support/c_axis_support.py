@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from cmath import exp
 from dataclasses import replace
-from itertools import pairwise
 from math import radians
 from typing import Any
 
+import numpy as np
 from machine_support import ROOT, MachineBench
 
 from cnc_ptp.parameters import MachineParameters, read_machine
@@ -49,9 +49,8 @@ def face_path(bench: MachineBench) -> list[complex]:
 def differences(values: list[float]) -> list[float]:
     """The largest velocity, acceleration and jerk in samples of 1 ms, per s, s² and s³."""
     largest = []
-    for _ in range(3):
-        values = [(after - before) * 1000.0 for before, after in pairwise(values)]
-        largest.append(max(map(abs, values)))
+    for order in range(1, 4):
+        largest.append(float(np.abs(np.diff(values, order)).max()) * 1000.0**order)
     return largest
 
 
