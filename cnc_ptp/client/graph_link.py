@@ -359,7 +359,10 @@ def start_graph(options: Mapping[str, Any], *, domain: int | None, namespace: st
     """The link to a graph that it starts. Raises as Machine.start."""
     files = {"scenario": options.get("scenario"), "PLC_file": options.get("plc")}
     check_recording(options.get("record"), machine_file=options["machine"], **files)
-    parameters = read_machine(options["machine"])
+    try:
+        parameters = read_machine(options["machine"])
+    except CncError as error:
+        raise error.meaning("nothing was started") from None
     check_plc(parameters, options.get("plc"))
     if (recorder := options.get("recorder")) is not None:
         check_recorder(RecorderOptions(**recorder), options.get("record"), unit_kinds(parameters))

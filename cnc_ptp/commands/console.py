@@ -37,9 +37,8 @@ def print_error(error: CncError) -> None:
     """The text of a refusal on standard error; of a program its line, a mark below the column, and its callers."""
     console = Console(stderr=True, highlight=False, soft_wrap=True, emoji=False)
     console.print(str(error), style="red", markup=False)
-    caret = getattr(error, "caret", "")
-    if caret:
-        console.print(caret, markup=False)
+    if getattr(error, "text", "").strip():  # of a program without a line there is nothing to mark
+        console.print(getattr(error, "caret", ""), markup=False)
     for place in getattr(error, "calls", ()):
         console.print(f"called in {place}", markup=False)
     if getattr(error, "note", ""):

@@ -15,8 +15,9 @@ from cnc_ptp.errors import WRONG_INPUT, CncError
 from cnc_ptp.ros_arguments import RosArguments
 from cnc_ptp.ros_arguments import split as split_ros_arguments
 
-WITHOUT_NODES = {
+NOT_DONE = {
     "simulate": "nothing was started",
+    "run": "nothing was started",
     "sweep": "nothing was started",
     "circle": "nothing was started",
     "identify": "nothing was made",
@@ -30,7 +31,7 @@ WITHOUT_NODES = {
     "params": "no parameters were read",
     "web": "nothing was served",
 }
-"""What commands that start no nodes do not do with a machine file that is wrong."""
+"""What commands do not do with a machine file that is wrong."""
 
 
 NO_ROOM_TO_PRINT = 26208
@@ -73,7 +74,7 @@ class Group(click.Group):
         try:
             return super().invoke(context)
         except CncError as error:
-            effect = WITHOUT_NODES.get(context.find_root().invoked_subcommand or "")
+            effect = NOT_DONE.get(context.find_root().invoked_subcommand or "")
             print_error(error if effect is None else error.meaning(effect))
             sys.exit(WRONG_INPUT)
         except OSError as error:  # of a file that the command writes it is a CncError

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
+from long_support import long
 
 from cnc_ptp import __main__ as entries
 from cnc_ptp import cli
@@ -55,7 +56,9 @@ def test_a_word_is_no_number():
     assert result.exit_code == 2 and "'--state-rate': 'abc' is not a valid number.\n" in result.stderr
 
 
-@pytest.mark.parametrize("node", ["nc_channel", "axis", "spindle", "plc_bridge", "clock", "recorder", "player"])
+@pytest.mark.parametrize(
+    "node", ["axis", "player", *long(["nc_channel", "spindle", "plc_bridge", "clock", "recorder"])]
+)
 def test_nodes_have_help(node):
     done = subprocess.run(
         [sys.executable, "-m", f"cnc_ptp.nodes.{node}", "--help"],
@@ -212,9 +215,22 @@ def test_unusable_input_is_status_2(arguments, error):
 
 
 @pytest.mark.parametrize(
-    ("command", "effect"), [("simulate", "nothing was started"), ("run", "the node does not start")]
-)
-def test_a_typo_in_the_machine_file_starts_nothing(command, effect, tmp_path):
+    ("text", "shown"),
+    [
+        ("", "P-ERR-21014 {file} line 1 column 1 '': no main program; nothing has moved"),
+        ("\n\n", "P-ERR-21014 {file} line 1 column 1 '': no main program; nothing has moved"),
+        ("G1 XX", "P-ERR-21002 {file} line 1 column 4 'G1 XX': unknown word 'XX'; nothing has moved\nG1 XX\n   ^"),
+    ],
+)  # fmt: skip
+def test_a_place_without_a_text_is_not_marked(text, shown, tmp_path):
+    file = tmp_path / "part.nc"
+    file.write_text(text)
+    result = call("simulate", MILL, "--program", file)
+    assert (result.exit_code, result.stderr) == (2, shown.format(file=file) + "\n")
+
+
+@pytest.mark.parametrize("command", ["simulate", "run"])
+def test_a_typo_in_the_machine_file_starts_nothing(command, tmp_path):
     path = tmp_path / "typo.yaml"
     path.write_text(MILL.read_text().replace("slep_max: 150000", "slepp_max: 150000", 1))
     result = call(command, path)
@@ -223,7 +239,7 @@ def test_a_typo_in_the_machine_file_starts_nothing(command, effect, tmp_path):
         "axis /x has no parameter 'getriebe.0.slepp_max'; did you mean getriebe[i].slep_max (P-AXIS-00168)?"
         in result.stderr
     )
-    assert result.stderr.strip().endswith(f"; {effect}")
+    assert result.stderr.strip().endswith("; nothing was started")
 
 
 def test_a_bad_scenario_lists_every_fault(tmp_path):

@@ -107,6 +107,10 @@ def test_what_cannot_be_started(m, mill, folder):
         26110,
         f"scenario {folder}/none.yaml cannot be read: No such file or directory; nothing was started",
     )
+    typo = folder / "typo.yaml"
+    typo.write_text(f"{mill.read_text()}nonsense: 1\n")
+    number, text, _ = refusal(lambda: Machine.start(typo, namespace="a"))
+    assert 25000 < number < 26000 and text.endswith("; nothing was started")
     number, text, _ = refusal(lambda: Machine.start(mill, composed=True, namespace="a", timeout=0.0))
     assert (number, text) == (
         26176,
