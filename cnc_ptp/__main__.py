@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 import sys
 from collections.abc import Callable
+from pathlib import Path
 
 from cnc_ptp import KERNEL
 from cnc_ptp.interrupt import end_command
@@ -17,13 +18,25 @@ def _entry(*command: str) -> Callable[[], object]:
     def call() -> object:
         signal.signal(signal.SIGINT, end_command)
         use_one_thread()
-        if KERNEL.remedy:
-            print(f"{KERNEL}; {KERNEL.remedy}", file=sys.stderr)
-        from cnc_ptp.cli import main
+        try:
+            from cnc_ptp.cli import main
 
-        return main.main(args=[*command, *sys.argv[1:]], prog_name="cnc_ptp")
+            if KERNEL.remedy:
+                print(f"{KERNEL}; {KERNEL.remedy}", file=sys.stderr)
+            return main.main(args=[*command, *sys.argv[1:]], prog_name="cnc_ptp")
+        except ImportError as error:
+            if is_installed(error):
+                raise
+            print(f"cnc_ptp is not installed completely ({error}); call `make setup` first", file=sys.stderr)
+            sys.exit(2)
 
     return call
+
+
+def is_installed(error: ImportError) -> bool:
+    """Whether the error is a mistake in cnc_ptp itself: no package of others and no ROS interfaces are missing."""
+    interfaces = Path(__file__).with_name("msg") / "__init__.py"
+    return (error.name or "").partition(".")[0] == "cnc_ptp" and interfaces.is_file()
 
 
 main = _entry()
