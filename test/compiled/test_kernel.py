@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from long_support import long_but
 from loop_support import PLANT, T, control, make_loop
 
 from cnc_ptp import KERNEL
@@ -53,9 +54,7 @@ def call(*arguments: object, pure: bool = False, folder: Path = ROOT) -> subproc
     return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
 
 
-@pytest.mark.parametrize(
-    "run", [run if run != "bracket" else pytest.param(run, marks=pytest.mark.long) for run in RUNS]
-)
+@pytest.mark.parametrize("run", long_but(RUNS, ("spindles", "gantry")))
 @compiled_only
 def test_both_kernels_give_the_same_bits(run: str, tmp_path: Path) -> None:
     files = tmp_path / "compiled" / "run.mcap", tmp_path / "interpreted" / "run.mcap"
@@ -152,7 +151,12 @@ def test_a_failure_counts_until_a_source_changes(tmp_path: Path, monkeypatch: py
     monkeypatch.setattr(finder_module, "LIBRARY", tmp_path)
     state = hashes(sources() | recipe())
     told = []
-    for kept in ({}, {FAILURE: "it failed", **state}, {FAILURE: "it failed", **state, "cnc_ptp.axis.axis_unit": "0"}):
+    for kept in (
+        {},
+        {FAILURE: "it failed", **state},
+        {FAILURE: "it failed", **state, "cnc_ptp.axis.axis_unit": "0"},
+        {FAILURE: "its compilation was interrupted", **state},
+    ):
         write_state(tmp_path, kept)
         kernel = finder_module.Kernel()
         kernel.choose()
@@ -161,7 +165,23 @@ def test_a_failure_counts_until_a_source_changes(tmp_path: Path, monkeypatch: py
         ("it was not compiled", "make setup compiles it again"),
         ("it failed", "make setup compiles it again"),
         ("cnc_ptp/axis/axis_unit.py has changed since its compilation failed", "make setup compiles it again"),
+        ("it is being compiled, or its compilation was interrupted", "make setup compiles it again"),
     ]
+
+
+def test_while_it_is_being_compiled_the_kernel_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("CNC_PTP_PURE", raising=False)
+    monkeypatch.setattr(finder_module, "LIBRARY", tmp_path)
+    told = []
+
+    def look(*_: object) -> None:
+        kernel = finder_module.Kernel()
+        kernel.choose()
+        told.append(kernel.interpreted_because)
+
+    monkeypatch.setattr(build_module, "make_library", look)
+    build(tmp_path)
+    assert told == ["it is being compiled, or its compilation was interrupted"]
 
 
 def test_a_library_of_these_sources_is_not_built_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
