@@ -16,9 +16,6 @@ MOTION = pytest.StashKey[list[str]]()
 """What was checked of the motion of recordings, a line for each process."""
 sys.path[:0] = [str(HERE / "support"), str(HERE.parent)]
 
-settings.register_profile("project", deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
-settings.load_profile("project")
-
 
 @pytest.fixture
 def blocks() -> Any:
@@ -78,6 +75,14 @@ def pytest_configure(config: pytest.Config) -> None:
 
     compare_at_once()
     long_support.SHORT = "not long" in config.option.markexpr
+    settings.register_profile(
+        "project",
+        max_examples=long_support.examples(100),
+        deadline=None,
+        derandomize=True,
+        suppress_health_check=[HealthCheck.too_slow],
+    )
+    settings.load_profile("project")
 
 
 def pytest_collection_finish() -> None:

@@ -8,6 +8,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from long_support import examples
 from scipy.optimize import minimize
 
 from cnc_ptp.commissioning.curve_fit import curve_fault, fit_curve
@@ -239,7 +240,7 @@ def test_polynomial_that_swings_between_its_points():
 def test_turns_are_those_of_a_fine_grid(kind):
     """Where the sign of the slope changes, against 200001 places."""
     draw, seen = random.Random(21), 0
-    for _ in range(200):
+    for _ in range(examples(200)):
         points = [CurvePoint(1000.0 * k, draw.uniform(500.0, 1500.0)) for k in (1, 2, 3, 4)]
         try:
             fit = fit_curve(kind, points if kind == "polynomial" else points[:3], top_speed=4500.0)
@@ -251,7 +252,7 @@ def test_turns_are_those_of_a_fine_grid(kind):
         found = grid[1:-1][slopes[1:] * slopes[:-1] < 0]
         assert fit.turns() == pytest.approx([1000.0, *found, 4500.0], abs=0.02)
         seen += len(found)
-    assert seen > 30
+    assert seen > examples(30)
 
 
 # ---------------------------------------------------------------- refused points

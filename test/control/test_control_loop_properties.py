@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from hypothesis import HealthCheck, given, seed, settings
 from hypothesis import strategies as st
+from long_support import examples
 from loop_support import (
     A_MAX,
     ACC,
@@ -32,7 +33,7 @@ from cnc_ptp.control.control_loop import ControlCycle
 from cnc_ptp.control.drives import make_drive
 from cnc_ptp.control.feedforward import CouplingLimits
 
-QUIET = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow], database=None)
+QUIET = settings(max_examples=examples(60), deadline=None, suppress_health_check=[HealthCheck.too_slow], database=None)
 MODES = st.sampled_from([0, VEL, ACC, JERK, VEL | ACC | JERK, ADD_VEL | ADD_ACC | ADD_JERK, ADD_VEL | ACC, 0x300])
 SMALL = st.floats(-1.0, 1.0)
 STATES = st.lists(

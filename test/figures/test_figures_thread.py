@@ -21,6 +21,7 @@ def passes(name: str) -> list[ThreadPass]:
     return thread_passes(recorded(read_head(SCENARIOS / f"{name}.yaml"), run), run.machine)
 
 
+@pytest.mark.long
 def test_five_passes_lie_in_one_groove() -> None:
     found = passes("thread_longitudinal")
     assert len(found) == 5

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from long_support import examples
 
 from cnc_ptp.machine.gate import BlockGate
 from cnc_ptp.machine.wiring import Inputs
@@ -60,7 +61,7 @@ def test_later_blocks_need_upstream_and_feedback() -> None:
     ]
 
 
-@settings(max_examples=100, deadline=None, derandomize=True)
+@settings(max_examples=examples(100), deadline=None, derandomize=True)
 @given(st.permutations([(name, 10 * n) for name in ("tick", "plc", "x", "y") for n in range(5)]), st.data())
 def test_any_order_of_blocks_gives_the_same_computations(order: list[tuple[str, int]], data: st.DataObject) -> None:
     """Ticks keep their order (one sender); blocks come in any, some of them twice."""

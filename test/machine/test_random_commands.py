@@ -8,6 +8,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, rule
+from long_support import long
 
 from bench import random_commands
 from bench.random_commands import MACHINES, CommandedMachine, lives, main
@@ -53,7 +54,7 @@ TestRandomCommands.settings = settings(
 )
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", [1, *long([2])])
 def test_a_life_has_no_violation(seed: int) -> None:
     (machine,) = lives(120, seed)
     assert machine.violations == []
@@ -69,7 +70,7 @@ def test_seeds_that_have_found_something(seed: int) -> None:
 
 
 def test_the_same_seed_makes_the_same_machine() -> None:
-    first, second = (next(lives(60, 3)) for _ in range(2))
+    first, second = (next(lives(30, 3)) for _ in range(2))
     assert [record.arguments_json for record in first.records] == [record.arguments_json for record in second.records]
     assert repr(first.blocks) == repr(second.blocks)
 
@@ -117,7 +118,7 @@ def test_the_command_counts_its_steps(capsys: pytest.CaptureFixture[str]) -> Non
     assert capsys.readouterr().out.startswith("30 steps from seed 4 in ")
 
 
-@pytest.mark.parametrize("seed", [22, pytest.param(1010, marks=pytest.mark.long), 40003])
+@pytest.mark.parametrize("seed", [40003, *long([22, 1010])])
 def test_a_life_that_has_found_a_replay_with_another_refusal(seed: int) -> None:
     """A source, and a direction, that were not a number came back from the recording as a text; a `change_cam` that the
     PLC had refused was carried out.

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from long_support import examples
 from motion_checker import Motions, assert_all, assert_motions, over_acceleration, over_velocity, steps
 from motion_problems import Problem, random_problems
 from ruckig_peer import RuckigPeer
@@ -173,7 +174,7 @@ def test_never_slower_than_ruckig_with_the_smaller_ramp_on_both_sides():
 scales = st.floats(min_value=1e-3, max_value=1e5)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=examples(200), deadline=None)
 @given(scales, scales, scales, scales, st.floats(min_value=-1e5, max_value=1e5))
 def test_any_problem_ends_exactly_and_is_as_long_as_its_phases(v, up, down, jerk, target):
     limits = Limits(v, up, down, jerk)

@@ -9,6 +9,7 @@ from itertools import pairwise
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from long_support import examples
 from motion_checker import assert_motions
 from motion_problems import Problem
 
@@ -93,7 +94,7 @@ scales = st.floats(min_value=1e-3, max_value=1e5)
 values = st.floats(min_value=-1e5, max_value=1e5)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=examples(300), deadline=None)
 @given(values, values, values, values, scales, scales, scales, scales, st.booleans())
 def test_any_problem_has_a_table_that_ends_exactly(p, v, a, target, velocity, up, down, jerk, direct):
     profile = plan_to_position(p, v, a, target, Limits(velocity, up, down, jerk), direct=direct)

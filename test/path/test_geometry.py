@@ -7,6 +7,7 @@ import random
 
 import numpy as np
 import pytest
+from long_support import examples
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.motion import Limits, plan_rest_to_rest, plan_to_position
@@ -118,7 +119,7 @@ def test_shape_is_what_evaluate_makes_a_motion_of(draw_arc, draw_line):
 
 def test_bounds_hold_and_are_reached(draw_arc, draw_line):
     draw = random.Random(54)
-    for _ in range(300):
+    for _ in range(examples(300)):
         for element in (draw_arc(draw, 10 ** draw.uniform(-1, 3), 5), draw_line(draw, 5)):
             begin, end = sorted(draw.random() ** 2 * element.length for _ in range(2))
             sampled = np.abs([element.shape(s) for s in np.linspace(begin, end, 500)])[:, :, 1:].max(axis=0)
@@ -177,7 +178,7 @@ def assert_axes_hold(element, profile, axes):
 @pytest.mark.parametrize("kind", ["line", "arc"])
 def test_no_axis_exceeds_its_limits_also_after_a_change_of_override(kind, draw_axes, draw_arc, draw_line):
     draw = random.Random(52)
-    for _ in range(250):
+    for _ in range(examples(250)):
         axes = draw_axes(draw)
         element = draw_line(draw) if kind == "line" else draw_arc(draw, 10 ** draw.uniform(-3, 4))
         if element.length == 0.0:

@@ -7,6 +7,7 @@ import random
 
 import numpy as np
 import pytest
+from long_support import long
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.motion import Limits, plan_rest_to_rest
@@ -301,10 +302,11 @@ def test_a_new_cycle_time_goes_on_from_the_last_cycle():
     assert [row[:4] for row in rows] == [profile.state_at(0.01 + 0.004 * n) for n in (1, 2, 3)]
 
 
-def test_long_elements_gather_no_rounding():
+@pytest.mark.parametrize("length", [200.0, *long([1000.0])])
+def test_long_elements_gather_no_rounding(length):
     interpolator = PathInterpolator()
-    interpolator.start(line_of(1000.0), LIMITS, 1.0)
-    profile = plan_rest_to_rest(0.0, 1000.0, LIMITS._replace(velocity=1.0))
+    interpolator.start(line_of(length), LIMITS, 1.0)
+    profile = plan_rest_to_rest(0.0, length, LIMITS._replace(velocity=1.0))
     rows = []
     while not interpolator.done:
         rows += interpolator.step(10, T)

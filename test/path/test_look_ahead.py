@@ -101,7 +101,7 @@ def test_three_thousand_short_blocks_take_the_time_of_a_straight_one() -> None:
     assert_within(states, [AXIS] * 2)
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", [*range(4), *long(range(4, 20))])
 def test_near_the_optimum_of_topp_ra(seed: int) -> None:
     """The same limits of velocity and acceleration; the jerk is so large that it does not count."""
     curve = smooth_curve(seed)
@@ -122,7 +122,7 @@ def test_near_the_optimum_of_topp_ra(seed: int) -> None:
     assert_within(states, [axis] * 3)
 
 
-@pytest.mark.parametrize("seed", [1, *long([0, 2, 3, 4])])
+@pytest.mark.parametrize("seed", long(range(5)))
 def test_near_the_optimum_with_jerk(seed: int) -> None:
     """A solver over all of the path at once."""
     curve = smooth_curve(100 + seed)

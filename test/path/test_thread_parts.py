@@ -6,6 +6,7 @@ import random
 
 import numpy as np
 import pytest
+from long_support import examples
 
 from cnc_ptp.motion import Limits
 from cnc_ptp.nc.canonical import Thread
@@ -130,7 +131,7 @@ def test_a_mismatch_fades_out_within_the_limits():
     source = random.Random(7)
     limits = Limits(900.0, 480_000.0, 480_000.0, 1.2e7)
     kinds = set()
-    for _ in range(200):
+    for _ in range(examples(200)):
         size = source.choice([0.01, 1.0])
         mismatch = tuple(size * source.uniform(-most, most) for most in (3.0, 300.0, 6e3))
         fade = fading(mismatch, 0.02, -mismatch[2], limits)

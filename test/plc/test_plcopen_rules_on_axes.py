@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from long_support import examples
 from plcopen_support import PlcBench, outputs
 
 from cnc_ptp.plc.plcopen import (
@@ -80,7 +81,7 @@ def traces_of(edges: Edges) -> tuple[list[list[Call]], PlcBench]:
     return traces, bench
 
 
-@settings(max_examples=15, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=examples(15), deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
 @given(
     st.lists(st.tuples(st.integers(1, CYCLES - 20), st.sampled_from(CHOSEN)), min_size=6, max_size=40),
 )

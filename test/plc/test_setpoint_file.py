@@ -9,6 +9,7 @@ import pytest
 from click.testing import CliRunner
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from long_support import examples
 from machine_support import MILL, PTP, ROOT, MachineBench
 from superposition_support import generator
 
@@ -61,7 +62,7 @@ def test_what_is_read(text: str) -> None:
 numbers = st.floats(-1e12, 1e12)
 
 
-@settings(max_examples=50, deadline=None, derandomize=True, database=None)
+@settings(max_examples=examples(50), deadline=None, derandomize=True, database=None)
 @given(
     cycles=st.lists(st.integers(0, 10**12), min_size=1, unique=True).map(sorted),
     values=st.tuples(numbers, numbers, numbers),

@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import pytest
 from curve_support import POLYNOMIAL, TOP
+from long_support import examples
 
 from cnc_ptp.spindle.acceleration_curves import AccelerationCurve
 from cnc_ptp.spindle.positioning import (
@@ -47,7 +48,7 @@ def check_table(table: SpeedTable, position: float, speed: float, target: float,
 def test_seeded_positionings() -> None:
     """From any state in a given direction: the first place that is the goal and can be reached."""
     draw = random.Random(21)
-    for _ in range(300):
+    for _ in range(examples(300)):
         position, goal = draw.uniform(-1e4, 1e4), draw.uniform(-720.0, 720.0)
         speed = draw.choice((0.0, draw.uniform(-9000.0, 9000.0)))
         direction, turn = draw.choice((-1.0, 1.0)), draw.choice((360.0, 120.0))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 
 import pytest
+from long_support import long
 
 from cnc_ptp.spindle.speed_ramp import ConstantRamp, plan_speed
 
@@ -40,11 +41,12 @@ def test_ramps_are_textbook_motion(speed: float, wanted: float) -> None:
     assert profile.state_at(10.0)[1] == wanted
 
 
+@pytest.mark.parametrize("step", [77, *long([7])])
 @pytest.mark.parametrize("wanted", [72_000.0, -72_000.0, 333.3])
-def test_every_cycle_of_a_long_ramp_is_exact(wanted: float) -> None:
+def test_every_cycle_of_a_long_ramp_is_exact(wanted: float, step: int) -> None:
     """1e-9 relative, as along the curves, 80 s at 1 ms."""
     profile = plan_speed(0.0, -0.5 * wanted, wanted, RAMP)
-    for k in range(0, 80_000, 7):
+    for k in range(0, 80_000, step):
         p, v, _ = profile.state_at(k * 0.001)
         distance, speed = expected(0.0, -0.5 * wanted, wanted, k * 0.001)
         assert v == pytest.approx(speed, rel=1e-9, abs=1e-9) and p == pytest.approx(distance, rel=1e-9, abs=1e-6)

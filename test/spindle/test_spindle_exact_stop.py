@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 from channel_spindle_support import moves
+from long_support import long
 from machine_support import ROOT, MachineBench, UnitBench, changed_gear, spindle_bench, spindle_parameters
 from spindle_support import RPM, StuckDrive, assert_reached_in_windows, bench_of, first_cycle, states
 
@@ -46,7 +47,7 @@ def settled(motion: list[tuple[float, float]], end: int, target: float, zero_spe
 @pytest.mark.parametrize(
     ("time_constant", "kv"), [(0.008, 60.0), (0.008, 30.0), (0.005, 50.0), (0.012, 80.0), (0.02, 100.0), (0.002, 90.0)]
 )
-@pytest.mark.parametrize("settling_ms", [0, 5, 20, 50])
+@pytest.mark.parametrize("settling_ms", [0, 20, *long([5, 50])])
 def test_m19_is_reached_when_position_and_speed_have_been_there_for_the_time(
     time_constant: float, kv: float, settling_ms: int
 ) -> None:
@@ -210,7 +211,7 @@ def test_a_settling_time_above_the_time_limit_is_waited_for() -> None:
     assert bench.events == [] and 500 <= first_cycle(bench, "in_position", bool) - end <= 700
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", [*range(4), *long(range(4, 12))])
 def test_seeded_drives_and_windows(seed: int) -> None:
     """Whatever drive, gain, window and time: an acknowledgement has its windows behind it, or there is an error."""
     draw = random.Random(seed)

@@ -25,5 +25,5 @@ def long_but(values: Iterable[Any], short: Collection[Any]) -> list[Any]:
 
 
 def examples(count: int) -> int:
-    """Of a property that Hypothesis tests; without long tests a third."""
+    """How many of a property that is tested at random; without long tests a third."""
     return count // 3 if SHORT else count
