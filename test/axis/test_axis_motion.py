@@ -45,7 +45,7 @@ JOB, STOPPED, CONSTANT, ERROR = (
         (-300.0, {"velocity": 400.0, "jerk": 12_345.0}),
     ],
 )
-@pytest.mark.parametrize("begin", [0, 20, 130])
+@pytest.mark.parametrize("begin", [20, *long([0, 130])])
 def test_every_cycle_is_the_seven_phase_profile(target: float, dynamics: dict[str, float], begin: int) -> None:
     """The setpoint of the command's cycle c stays, set_position[c + k] = profile(k·T)."""
     bench = axis_bench(start_position=7.0)

@@ -137,7 +137,7 @@ def test_new_target_while_it_returns_from_another(target: float) -> None:
 
 
 @pytest.mark.parametrize("cycle", [300, 800])
-@pytest.mark.parametrize("pause", [0, 100, 250])
+@pytest.mark.parametrize("pause", [100, *long([0, 250])])
 @pytest.mark.parametrize("target", [3000.0, 5000.0, 0.0])
 def test_during_a_stop_it_waits_until_the_axis_stands(cycle: int, pause: int, target: float) -> None:
     """Then it continues automatically with the dynamics of the start."""
@@ -235,7 +235,7 @@ def test_after_a_stop_that_follows_a_halt_it_waits() -> None:
 # ---------------------------------------------------------------- override
 
 
-@pytest.mark.parametrize("kind", [1, 2, 3, 4])
+@pytest.mark.parametrize("kind", [1, 4, *long([2, 3])])
 @pytest.mark.parametrize("target", [4000.0, 500.0, -700.0])
 def test_while_override_0_holds_the_job(kind: int, target: float) -> None:
     bench = started(3000.0, 700, override_type=kind)

@@ -70,7 +70,7 @@ def expected_end(stretches: list[tuple[float, float]]) -> float:
 # ---------------------------------------------------------------- the six cases
 
 
-@pytest.mark.parametrize("direction", [1.0, -1.0])
+@pytest.mark.parametrize("direction", [-1.0, *long([1.0])])
 @pytest.mark.parametrize("new", [400.0, 2000.0, 1000.0])
 @pytest.mark.parametrize("activation", [THERE, 351.0, 1000.0, 2345.678])
 def test_case_1_later(direction: float, new: float, activation: float) -> None:
@@ -101,7 +101,7 @@ def test_case_2_at_once(direction: float, new: float, activation: float) -> None
     assert time_of_arrival(bench) == pytest.approx(time, abs=1.1 * CYCLE_TIME)
 
 
-@pytest.mark.parametrize("direction", [1.0, -1.0])
+@pytest.mark.parametrize("direction", [-1.0, *long([1.0])])
 @pytest.mark.parametrize(
     ("target", "activation"),
     [
@@ -167,7 +167,7 @@ def test_both_directions_are_mirror_images_to_the_bit() -> None:
 
 
 @pytest.mark.parametrize("count", [7, *long([1, 1000])])
-@pytest.mark.parametrize("activation", [351.3, 999.999, 1000.0, 2200.0])
+@pytest.mark.parametrize("activation", [351.3, 1000.0, *long([999.999, 2200.0])])
 def test_the_activation_does_not_depend_on_blocks(count: int, activation: float) -> None:
     benches = []
     for size in (10, count):
@@ -376,7 +376,7 @@ def test_short_successive_requests_do_not_stop_the_axis() -> None:
 # ---------------------------------------------------------------- override
 
 
-@pytest.mark.parametrize("kind", [1, 2, 3, 4])
+@pytest.mark.parametrize("kind", [1, 4, *long([2, 3])])
 @pytest.mark.parametrize("when", ["before", "pending", "after"])
 def test_override_and_new_velocity_are_compatible(kind: int, when: str) -> None:
     """50 %: 500 mm/s of the old velocity, 300 of the new 600, whenever the override comes."""

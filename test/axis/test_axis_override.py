@@ -52,7 +52,7 @@ def test_override_20_to_100_takes_the_closed_form_time(kind: int) -> None:
 
 
 @pytest.mark.parametrize("kind", [1, 2, 3, 4])
-@pytest.mark.parametrize("target", [5000.0, -5000.0])
+@pytest.mark.parametrize("target", [-5000.0, *long([5000.0])])
 def test_override_100_75_100_takes_the_closed_form_time(kind: int, target: float) -> None:
     bench = axis_bench(override_type=kind)
     start(bench, target)
@@ -89,7 +89,7 @@ def test_override_0_at_the_start_keeps_the_job_and_waits(kind: int) -> None:
 
 
 @pytest.mark.parametrize("kind", [1, 2, 3, 4])
-@pytest.mark.parametrize("cycle", [250, 700, *long([30, 470, 1100])])
+@pytest.mark.parametrize("cycle", [700, *long([250, 30, 470, 1100])])
 def test_override_0_in_motion_holds_and_100_goes_on(kind: int, cycle: int) -> None:
     bench = axis_bench(override_type=kind)
     start(bench, 3000.0)
@@ -268,7 +268,7 @@ def test_down_and_up_again_before_the_axis_has_changed_anything(kind: int, cycle
         assert ours == pytest.approx(theirs, abs=1e-3) and ours[0] == pytest.approx(theirs[0], abs=1e-7)
 
 
-@pytest.mark.parametrize("kind", [1, 2, 3, 4])
+@pytest.mark.parametrize("kind", [1, 4, *long([2, 3])])
 @pytest.mark.parametrize("cycle", [141, 200, 239, 300])
 @pytest.mark.parametrize("percent", [0.0, 60.0])
 def test_without_a_stretch_nothing_can_be_changed_once_the_acceleration_falls(
@@ -330,7 +330,7 @@ def test_in_a_stop_the_override_changes_nothing(command: str, percent: float) ->
 
 
 @pytest.mark.parametrize("kind", [1, 2, 3, 4])
-@pytest.mark.parametrize("levels", [(100.0, 20.0), (0.0, 100.0), (60.0, 61.0), (0.0001, 100.0)])
+@pytest.mark.parametrize("levels", [(100.0, 20.0), (0.0001, 100.0), *long([(0.0, 100.0), (60.0, 61.0)])])
 @pytest.mark.parametrize("pause", [1, *long([7, 90])])
 def test_rapid_toggling_never_steps_and_ends_at_the_target(kind: int, levels: tuple[float, float], pause: int) -> None:
     bench = started(2000.0, 50, override_type=kind)
@@ -384,7 +384,7 @@ def test_0_and_100_pass_the_filter_at_once(percent: float, velocity: float) -> N
     assert bench.column("set_velocity")[-1] == velocity
 
 
-@pytest.mark.parametrize("count", [1, 7, 150, 1000])
+@pytest.mark.parametrize("count", [7, *long([1, 150, 1000])])
 def test_the_filter_counts_cycles_and_not_blocks(count: int) -> None:
     benches = []
     for size in (10, count):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from long_support import examples
+from long_support import examples, long
 from scipy.integrate import cumulative_simpson, quad, simpson
 from scipy.optimize import brentq
 
@@ -140,7 +140,7 @@ def follow(velocity: object, derivative: object, cycles: int, *, direction: floa
 
 
 @pytest.mark.parametrize("share", [0.001, 0.25, 0.9999, 1.0, 1.0001, 3.0])
-@pytest.mark.parametrize("direction", [1.0, -1.0])
+@pytest.mark.parametrize("direction", [-1.0, *long([1.0])])
 def test_a_constant_velocity_v_compensates_d_times_the_smaller_of_1_and_v_by_vp(share: float, direction: float) -> None:
     rows = follow(lambda t: direction * share * VP, lambda t: 0.0, 2100, direction=direction)
     assert rows[-1][0] == pytest.approx(direction * 300.0 * min(1.0, share), rel=1e-12)

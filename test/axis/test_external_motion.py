@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from long_support import long
+from long_support import long, long_sets
 from machine_support import CYCLE_TIME, UnitBench, seven_phases
 from scipy.interpolate import CubicHermiteSpline
 from superposition_support import (
@@ -26,7 +26,7 @@ from superposition_support import (
 # alone
 
 
-@pytest.mark.parametrize("start", [0.0, 0.1, -1234.567])
+@pytest.mark.parametrize("start", [0.0, -1234.567, *long([0.1])])
 @pytest.mark.parametrize("distance", [600.0, -600.0])
 @pytest.mark.parametrize("count", [7, 10, *long([1, 1000])])
 def test_absolute_setpoints_come_out_to_the_bit(start: float, distance: float, count: int) -> None:
@@ -96,7 +96,7 @@ def test_two_absolute_motions_with_a_ptp_motion_in_between() -> None:
 
 
 @pytest.mark.parametrize("distance", [300.0, -300.0])
-@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("side", [-1.0, *long([1.0])])
 def test_relative_setpoints_on_a_ptp_motion_are_added_exactly(distance: float, side: float) -> None:
     bench, clean = moving_axis(target=side * 10_000.0), moving_axis(target=side * 10_000.0)
     bench.accepted("external_enable", mode="relative")
@@ -209,7 +209,7 @@ def test_direction_0_gates() -> None:
 
 @pytest.mark.parametrize("end", ["disable", "direction 0"])
 @pytest.mark.parametrize(
-    ("v", "a"), [(1000.0, 0.0), (600.0, 4000.0), (600.0, -4000.0), (-1000.0, 0.0), (-600.0, -4000.0)]
+    ("v", "a"), [(1000.0, 0.0), (600.0, -4000.0), (-600.0, -4000.0), *long_sets([(600.0, 4000.0), (-1000.0, 0.0)])]
 )
 def test_an_end_in_motion_comes_to_rest_on_the_ramp_of_the_axis(end: str, v: float, a: float) -> None:
     """Its acceleration ends immediately: a stop from (v, 0) with A- = 5000 and J = 50000 over v/2·(v/A + A/J)."""
@@ -371,7 +371,7 @@ def test_a_dead_time_leads_the_axis_ahead(dead_time: float) -> None:
     assert bench.events == []
 
 
-@pytest.mark.parametrize("count", [1, 7, 1000])
+@pytest.mark.parametrize("count", [7, *long([1, 1000])])
 @pytest.mark.parametrize("mode", ["absolute", "relative"])
 def test_the_size_of_blocks_changes_no_bit(count: int, mode: str) -> None:
     runs = []

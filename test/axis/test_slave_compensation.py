@@ -197,7 +197,7 @@ def test_the_end_of_the_masters_path_ends_it(end: str) -> None:
     assert compensated(bench, "y", "x", 1.0) == pytest.approx(gap + 100.0, abs=1e-6)
 
 
-@pytest.mark.parametrize("seconds", [0.1, 0.5, 1.5])
+@pytest.mark.parametrize("seconds", [0.5, *long([0.1, 1.5])])
 def test_stop_of_a_compensation_on_a_slave(seconds: float) -> None:
     bench = running()
     bench.do("y", "compensation_start", **COMPENSATION)

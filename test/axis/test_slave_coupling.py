@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from error_support import refused
+from long_support import long_but
 from machine_support import position_after, seven_phases
 from slave_support import (
     COMPENSATION,
@@ -141,7 +142,10 @@ def test_a_cascade_is_coupled_in_any_order_of_commands(order: tuple[str, ...]) -
     assert_linear(bench, "x", "c", -1.0)
 
 
-@pytest.mark.parametrize("order", list(permutations("xyzc")))
+ORDERS = list(permutations("xyzc"))
+
+
+@pytest.mark.parametrize("order", long_but(ORDERS, ORDERS[::5]))
 def test_a_cascade_moves_in_the_same_cycle_in_any_order_of_the_machine(order: tuple[str, ...]) -> None:
     """Bits of all orders are equal: nobody is a block behind its master."""
 

@@ -97,7 +97,7 @@ PHASES = {
 }
 
 
-@pytest.mark.parametrize("factor", [1.0, -0.25, *long([0.5, -1.0])])
+@pytest.mark.parametrize("factor", [-0.25, *long([1.0, 0.5, -1.0])])
 @pytest.mark.parametrize("phase", PHASES)
 def test_in_every_phase_of_the_master(phase: str, factor: float) -> None:
     """Continues with v + a·|a|/2J, the velocity that is left when its own jerk has taken the acceleration out."""
@@ -166,7 +166,7 @@ def test_a_pseudo_master_is_stopped_on_its_own(command: str) -> None:
 
 
 @pytest.mark.parametrize("phase", PHASES)
-@pytest.mark.parametrize("target", [4000.0, -500.0, *long([700.0, 3.0])])
+@pytest.mark.parametrize("target", [-500.0, *long([4000.0, 700.0, 3.0])])
 def test_a_new_target_in_and_against_the_direction(target: float, phase: str) -> None:
     """Reached exactly and without a step, from every phase of the master."""
     bench = moving(0.75, target=2000.0, seconds=PHASES[phase])
@@ -224,7 +224,7 @@ def test_a_refused_decoupling_leaves_the_slave_coupled(arguments: dict[str, floa
 
 
 @pytest.mark.parametrize("phase", PHASES)
-@pytest.mark.parametrize("wanted", [100.0, 1700.0])
+@pytest.mark.parametrize("wanted", [1700.0, *long([100.0])])
 def test_a_new_velocity(wanted: float, phase: str) -> None:
     bench = moving(-0.5, target=2000.0, seconds=PHASES[phase])
     assert bench.do("y", "decouple", velocity=wanted) == ""
@@ -286,7 +286,7 @@ def test_a_compensation_is_never_completed_after_decoupling(compensating: str) -
     assert np.abs(np.diff(p) - 0.0005 * (v[1:] + v[:-1])).max() < 1e-4
 
 
-@pytest.mark.parametrize("seconds", [0.1, 0.3, 0.6])
+@pytest.mark.parametrize("seconds", [0.3, *long([0.1, 0.6])])
 def test_decoupling_during_the_ramps_of_a_compensation_with_a_target(seconds: float) -> None:
     bench = moving(1.0)
     bench.do("y", "compensation_start", **{**COMPENSATION, "difference": -500.0})
@@ -312,7 +312,7 @@ def test_on_the_way_to_a_target_the_velocity_of_a_compensation_stays() -> None:
 # cascade
 
 
-@pytest.mark.parametrize("gone", ["a1", "a2", "a3", "a4"])
+@pytest.mark.parametrize("gone", ["a1", "a4", *long(["a2", "a3"])])
 def test_anywhere_in_a_cascade(gone: str) -> None:
     """Above the one that goes all follow the master, below it all follow the pseudo master."""
     names = ["a0", "a1", "a2", "a3", "a4"]

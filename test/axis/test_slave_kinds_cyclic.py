@@ -7,6 +7,7 @@ from math import cos, pi
 import numpy as np
 import pytest
 from error_support import refused
+from long_support import long
 from machine_support import assert_axis_smooth
 from slave_support import DYNAMICS, SlaveBench
 
@@ -96,7 +97,7 @@ def saw(bench: SlaveBench, **changes: float) -> str:
     return bench.do("y", "couple_flying_saw", master="x", **arguments)
 
 
-@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("sign", [-1.0, *long([1.0])])
 @pytest.mark.parametrize("factor", [1.0, -0.5])
 def test_flying_saw_is_synchronous_and_can_be_taken_off(sign: float, factor: float) -> None:
     bench = SlaveBench()

@@ -10,6 +10,7 @@ from axis_motion_support import run_to_standstill
 from axis_states_support import DYNAMICS, STATES, A, J, follow_path
 from error_support import refused
 from job_support import ABORTED, ACTIVE, DONE, FAILED, end_of, job, start_of, told
+from long_support import long
 from machine_support import CYCLE_TIME, UnitBench, assert_axis_smooth, axis_bench, position_after, seven_phases
 from slave_support import SlaveBench
 from superposition_support import column
@@ -96,7 +97,7 @@ def test_from_standstill_it_is_a_relative_motion() -> None:
     assert bench.column("set_position")[-1] == 0.0
 
 
-@pytest.mark.parametrize("count", [1, 7, 1000])
+@pytest.mark.parametrize("count", [7, *long([1, 1000])])
 def test_it_does_not_depend_on_the_size_of_blocks(count: int) -> None:
     benches = axis_bench(count=10), axis_bench(count=count)
     for bench in benches:

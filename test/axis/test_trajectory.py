@@ -214,7 +214,7 @@ STOPS = [
 ]
 
 
-@pytest.mark.parametrize("columns", [3, 4])
+@pytest.mark.parametrize("columns", [4, *long([3])])
 @pytest.mark.parametrize(("command", "arguments", "state", "status"), STOPS, ids=[row[0] for row in STOPS])
 @pytest.mark.parametrize("cycles", [300, 1690, *long([1, 760])])
 def test_what_ends_it_continues_from_its_state(

@@ -117,7 +117,10 @@ def test_axes_follow_the_channel_without_a_cycle_of_delay() -> None:
     assert bench.states("channel") == [C.RUNNING, C.READY]
 
 
-@pytest.mark.parametrize("length", [3.0 + 0.173 * n for n in range(25)])
+LENGTHS = [3.0 + 0.173 * n for n in range(25)]
+
+
+@pytest.mark.parametrize("length", long_but(LENGTHS, LENGTHS[::3]))
 def test_programs_of_any_length_end_without_a_fault(length: float) -> None:
     """The end may fall on any place of a block, also between its last cycle and the next block."""
     bench = MachineBench(f"%P\nG01 X{length:.4f} F3000\nM30").run()

@@ -7,6 +7,7 @@ import random
 
 import numpy as np
 import pytest
+from long_support import long
 from machine_support import CYCLE_TIME, MILL, MachineBench
 from machine_support import assert_axes_smooth as smooth
 from shapely import LineString, Point
@@ -54,7 +55,7 @@ def test_line_and_block_count_follow_the_path() -> None:
     assert bench.blocks["channel"][-1].blocks_done == bench.blocks["channel"][-1].blocks_total
 
 
-@pytest.mark.parametrize("tolerance", [0.001, 0.01, 0.1])
+@pytest.mark.parametrize("tolerance", [0.01, *long([0.001, 0.1])])
 def test_corners_stay_within_the_tolerance(tolerance: float) -> None:
     """Shapely's distance to the programmed polygon; the tolerance is used."""
     corners = [(0, 0), (30, 0), (30, 20), (10, 25), (12, 5), (0, 0)]

@@ -255,7 +255,7 @@ def test_silence(cycle: int) -> None:
     assert_stops(bench, "no external setpoint for 200 ms while the axis moves", 23034)
 
 
-@pytest.mark.parametrize("cycle", range(3100, 3110, 3))
+@pytest.mark.parametrize("cycle", [3100, 3109, *long([3103, 3106])])
 def test_a_jump(cycle: int) -> None:
     bench = PathBench().run(2.9)
     bench.accepted("x", "external_enable", mode="relative")

@@ -283,7 +283,7 @@ def things(bench: PathBench, choice: random.Random) -> None:
         bench.send("x", "couple_flying_saw", master="z", factor=factor, **values)
 
 
-@pytest.mark.parametrize("seed", [*range(3), *long(range(3, 8))])
+@pytest.mark.parametrize("seed", [0, *long([1, 2, *range(3, 8)])])
 def test_at_random_nothing_jumps_and_all_ends(seed: int) -> None:
     choice, bench = random.Random(seed), conveyor()
     for _ in range(40):

@@ -299,7 +299,7 @@ def test_replay_gives_the_same_again() -> None:
         assert again[unit] == first[unit]
 
 
-@pytest.mark.parametrize("behind", ["", "G01 X10 F2000\n", "G04 0.1\n", "G63 Z-2 F250 S200\nZ5 S-200\n"])
+@pytest.mark.parametrize("behind", ["", "G63 Z-2 F250 S200\nZ5 S-200\n", *long(["G01 X10 F2000\n", "G04 0.1\n"])])
 @pytest.mark.parametrize("feed", [333, *long([125, 250])])
 def test_the_spindle_ends_where_the_path_does(feed: int, behind: str) -> None:
     """Also where the path comes to rest within the last cycle of a block: hole after hole begins at the same angle."""

@@ -43,7 +43,7 @@ def least_error(gain: float, seconds: float, lead: float, jerk: float) -> float:
 
 @pytest.mark.parametrize(
     ("machine", "lead", "most_set", "most_actual"),
-    [(LATHE, 1.5, 0.00205, 0.0021), (FAST, 1.5, 0.0079, 0.0080), (FAST, 0.5, 0.0021, 0.0022)],
+    [(LATHE, 1.5, 0.00205, 0.0021), *long_sets([(FAST, 1.5, 0.0079, 0.0080), (FAST, 0.5, 0.0021, 0.0022)])],
 )
 def test_a_dip_of_10_percent(machine, lead, most_set, most_actual):
     """5 µm against the actual angle hold with 6000 deg/s²; with 18,000 even the bound of any path is higher."""

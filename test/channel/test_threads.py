@@ -40,7 +40,7 @@ def test_two_starts_are_180_deg_apart():
         assert apart(180.0, apart(first, second)) == pytest.approx(0.0, abs=0.002)
 
 
-@pytest.mark.parametrize("offset", [0.0, 33.0, 359.5])
+@pytest.mark.parametrize("offset", [33.0, *long([0.0, 359.5])])
 def test_a_thread_begins_at_its_offset_in_the_direction_of_the_spindle(offset):
     bench = cut(f"G33 Z48 K3 S.OFFSET={offset}", head="%T\nN10 G18 G90 M04 S400\nG00 X36 Z105\n")
     sense_less = Pass(bench, 4, 3.0, sense=-1).phase(2.0, 54.0)

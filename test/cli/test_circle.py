@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import yaml
 from commands_support import MILL, PTP, call, changed_mill
+from long_support import long_sets
 
 from cnc_ptp.commands.commissioning.circle_report import CircleTest, Variant, VariantResult, comparison_lines
 from cnc_ptp.plots.colours import DARK
@@ -104,7 +105,7 @@ def test_without_friction_the_lag_alone_makes_the_circle_smaller(tmp_path):
         assert values[3:7] == pytest.approx([0.0] * 4, abs=0.03)
 
 
-@pytest.mark.parametrize(("friction", "better"), [("--no-friction", 20.0), ("--friction", 500.0)])
+@pytest.mark.parametrize(("friction", "better"), [("--no-friction", 20.0), *long_sets([("--friction", 500.0)])])
 def test_feedforward_itself_makes_axes_of_unequal_gain_10_times_rounder(friction, better, tmp_path):
     """Kv 50 and 30 1/s make an ellipse; its half axes are the singular values of both responses.
 

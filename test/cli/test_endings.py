@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
+from long_support import long
 
 from cnc_ptp import cli
 from cnc_ptp.commands.run.replay import replay_blocks
@@ -38,7 +39,7 @@ def wait_for_size(path, size):
         time.sleep(0.01)
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, *long([signal.SIGTERM])])
 def test_interrupted_simulation_stops_on_its_ramps(number, tmp_path):
     recording = tmp_path / "run.mcap"
     job = command("simulate", MILL, "--program", BRACKET, "--duration", 1e6, "--record", recording)
@@ -210,8 +211,9 @@ def test_a_folder_without_a_name_is_no_program(tmp_path, monkeypatch):
 
 
 def test_standard_output_on_a_full_disk_is_no_traceback(tmp_path):
-    recording = tmp_path / "run.mcap"
-    job = command("simulate", MILL, "--program", BRACKET, "--record", recording)
+    recording, program = tmp_path / "run.mcap", tmp_path / "line.nc"
+    program.write_text("G01 X10 F3000\nM30\n")
+    job = command("simulate", MILL, "--program", program, "--record", recording)
     with Path("/dev/full").open("w") as full:
         done = subprocess.run(job, stdout=full, stderr=subprocess.PIPE, text=True, timeout=120, check=False)
     assert (done.returncode, done.stderr) == (

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import yaml
 from commands_support import MILL, PTP, call, changed_mill, paste, recording_of
+from long_support import long_sets
 
 from cnc_ptp.parameters import load_machine, read_machine
 from cnc_ptp.parameters.check.stability import stability_limit
@@ -143,8 +144,10 @@ def test_the_drive_of_z_is_a_first_order_lag_of_3_ms(tmp_path):
     assert pasted.kv == 71.43 and pasted.feedforward.time_constant == 0.003
 
 
-@pytest.mark.parametrize("velocity", [[], ["S-0-0040"]])
-@pytest.mark.parametrize("torque", [[], ["S-0-0084"]])
+@pytest.mark.parametrize(
+    ("velocity", "torque"),
+    [([], ["S-0-0084"]), (["S-0-0040"], []), *long_sets([([], []), (["S-0-0040"], ["S-0-0084"])])],
+)
 def test_whatever_the_telegram_carries_back_the_drive_is_the_same(velocity, torque, tmp_path):
     """Without S-0-0040 the actual velocity is the way of the last cycle, half a cycle older."""
     telegram = {"commands": ["S-0-0036"], "feedback": ["S-0-0051", *velocity, *torque]}

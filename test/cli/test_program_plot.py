@@ -150,7 +150,8 @@ def test_override_dialect_and_first_colour(folder: Path) -> None:
     seconds("--override", "50", "--colour", "acceleration")
     text = (folder / "o.html").read_text()
     assert "override 50 %" in text and text.index('"label":"acceleration"') < text.index('"label":"feed"')
-    plate = call("plot", "examples/plate.ngc", "--machine", MILL, "--dialect", "iso", "-o", folder / "plate.html")
+    (folder / "plate.ngc").write_text("G21 G90\nG00 X0 Y0 Z5\nG81 X10 Y10 Z-3 R2 F300\nG80\nM30\n")
+    plate = call("plot", folder / "plate.ngc", "--machine", MILL, "--dialect", "iso", "-o", folder / "plate.html")
     assert plate.exit_code == 0, plate.output
 
 

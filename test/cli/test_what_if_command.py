@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner, Result
+from long_support import long_sets
 from machine_support import ROOT
 
 from cnc_ptp import cli
@@ -45,7 +46,7 @@ def last_line(result: Result) -> str:
     return " ".join(result.output.split())
 
 
-@pytest.mark.parametrize(("seconds", "checkpoints"), [(2, [2000, 4000]), (0, []), (10, [])])
+@pytest.mark.parametrize(("seconds", "checkpoints"), [(2, [2000, 4000]), (0, []), *long_sets([(10, [])])])
 def test_the_interval_of_the_checkpoints(seconds: int, checkpoints: list[int], tmp_path: Path) -> None:
     path = simulated(tmp_path, "--checkpoints", seconds)
     with RunInputs(path) as found:

@@ -6,6 +6,7 @@ import random
 import numpy as np
 import pytest
 from commissioning_support import T, stribeck, trace_of
+from long_support import long
 from scipy.integrate import cumulative_trapezoid
 
 from cnc_ptp.commissioning import inertia
@@ -88,7 +89,7 @@ def test_neither_the_age_of_the_torque_nor_a_lag_of_the_axis_bends_it(lag, momen
     assert fit_inertia(run).torque_per_acceleration == pytest.approx(0.05, rel=1e-4)
 
 
-@pytest.mark.parametrize("noise", [0.5, 2.0, 5.0])
+@pytest.mark.parametrize("noise", [5.0, *long([0.5, 2.0])])
 def test_noise_of_the_velocity_does_not_make_the_inertia_smaller(noise):
     """Least squares give k·(1 - 2·noise²/mean of Δv²): 6 % too little with 5 mm/s."""
     found = [
@@ -171,7 +172,7 @@ def runs_away(kv, time_constant, dead, cycles=40_000):
 
 
 @pytest.mark.parametrize("time_constant", [0.0, 0.0005, 0.003, 0.02])
-@pytest.mark.parametrize("dead", [0, 1, 4])
+@pytest.mark.parametrize("dead", [1, *long([0, 4])])
 def test_the_limit_is_where_the_loop_begins_to_run_away(time_constant, dead):
     limit = stability_limit(time_constant, dead, T)
     assert not runs_away(0.98 * limit, time_constant, dead)

@@ -6,6 +6,7 @@ import math
 
 import pytest
 from format_support import control_of
+from long_support import long_but
 from loop_support import LIMITS, T
 
 from cnc_ptp.control.control_loop import ControlLoop
@@ -68,7 +69,7 @@ def size_after(lines: tuple[str, ...], kv: float, cycles: int) -> float:
     return max(errors[-100:])
 
 
-@pytest.mark.parametrize("name", LOOPS)
+@pytest.mark.parametrize("name", long_but(LOOPS, [*LOOPS][::3]))
 def test_the_limit_is_where_loops_begin_to_grow(name: str) -> None:
     lines = (*LOOPS[name], "simulation.encoder: 0")
     loop = position_loop(control_of(*lines), T)
@@ -93,7 +94,7 @@ def test_limits_of_a_proportional_velocity_controller_are_closed_forms(gain: int
     assert bus.limit(T) == pytest.approx(2.0 / T * (2.0 - c) / (2.0 + c), rel=1e-6)
 
 
-@pytest.mark.parametrize("name", LOOPS)
+@pytest.mark.parametrize("name", long_but(LOOPS, [*LOOPS][::3]))
 def test_an_unstable_loop_swings_but_its_numbers_stay_numbers(name: str) -> None:
     lines = LOOPS[name]
     limit = position_loop(control_of(*lines), T).limit(T)

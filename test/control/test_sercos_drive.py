@@ -8,6 +8,7 @@ from math import ceil, copysign
 from typing import Any
 
 import pytest
+from long_support import long
 from machine_support import CYCLE_TIME, position_after, seven_phases
 from sercos_support import EDGE, MARK, START, A, DriveBench, J, V, ramp
 
@@ -76,7 +77,7 @@ def test_it_stops_behind_the_reference_if_bit_7_says_so() -> None:
     assert shown == round((-4.0 + bench.positions[-1] - MARK) * 10_000)
 
 
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", [*range(10), *long(range(10, 30))])
 def test_wherever_it_starts_its_position_is_that_of_the_machine(seed: int) -> None:
     """The reference is given the place of the marker: from then on the drive counts as the machine does."""
     rng = random.Random(seed)

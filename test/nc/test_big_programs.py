@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from long_support import long
 from nc_support import HERE, channel_of, vocabulary_of
 
 from cnc_ptp.commands.look import check as check_module
@@ -49,7 +50,7 @@ def stream(program, text: str) -> list[str]:
     return [format_block(block) for block in interpret(program, (0.0,) * len(channel.axes), channel)]
 
 
-@pytest.mark.parametrize("ending", ["\n", "\r\n"])
+@pytest.mark.parametrize("ending", ["\r\n", *long(["\n"])])
 @pytest.mark.parametrize("path", GOOD, ids=lambda path: path.stem)
 def test_a_file_gives_what_its_text_gives(path: Path, ending: str, tmp_path: Path) -> None:
     text = path.read_text()

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 import shapely
 from contour_support import Edge, distances, edges_of, polygon, random_contour, words
+from long_support import examples, long
 from nc_support import TABLES, run
 
 from cnc_ptp.nc.faults import ProgramError
@@ -78,7 +79,7 @@ def test_two_hundred_contours_of_lines_and_arcs_by_distances() -> None:
 @pytest.mark.parametrize("command", ["#FACE [X, C]", "#CYL [X, C, X20]"])
 def test_contours_on_the_face_and_on_the_cylinder(command: str) -> None:
     """The plane is that of the Cartesian words, whatever G17 to G19 say."""
-    for seed, contour, _, radius in cases(lines_only=False)[:60]:
+    for seed, contour, _, radius in cases(lines_only=False)[: examples(60)]:
         code, tools = "G41" if radius < 0.0 else "G42", ToolTable({1: Tool(radius=abs(radius))}, True)
         tool, *text = program(contour, code).replace("Y", "C").split("\n")
         text = ["D1", "#CAX", command, f"G19 {tool.removeprefix('D1 ')}", *text]
@@ -158,7 +159,7 @@ INSIDE = [name for name, (_, text, _) in CLOSED.items() if "G41" in text]
 
 
 @pytest.mark.parametrize("name", CLOSED)
-@pytest.mark.parametrize("look_ahead", [5, 50])
+@pytest.mark.parametrize("look_ahead", [50, *long([5])])
 def test_a_closed_contour_with_overruns_is_machined_as_a_whole(name: str, look_ahead: int) -> None:
     """All of Shapely's offset of the edges, and no point of the path is nearer to one."""
     radius, text, start = CLOSED[name]

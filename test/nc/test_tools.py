@@ -8,6 +8,7 @@ from math import cos, radians, sin
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from long_support import examples
 from nc_support import MILLING, TOOLS, run
 
 from cnc_ptp.nc.canonical import Source
@@ -30,7 +31,7 @@ def last(text: str, tools: ToolTable, **options: object) -> tuple[float, ...]:
     return motions[-1].target
 
 
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=examples(60), deadline=None, derandomize=True)
 @given(st.tuples(*[LENGTHS] * 9), st.tuples(ANGLES, ANGLES, ANGLES), st.booleans(), st.sampled_from((17, 18, 19)))
 def test_a_tool_under_a_zero_offset_and_a_coordinate_system(values, angles, fixed, plane):  # type: ignore[no-untyped-def]
     """machine = zero + R·p + t, or zero + R·(p + t) for a tool that turns; R = Rz·Ry·Rx, written out by hand."""
@@ -54,7 +55,7 @@ def test_a_tool_under_a_zero_offset_and_a_coordinate_system(values, angles, fixe
     assert last(text, ToolTable({1: tool}, True)) == pytest.approx(expected, abs=1e-9)
 
 
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=examples(60), deadline=None, derandomize=True)
 @given(st.lists(st.sampled_from(("D1", "D2", "D3", "D13", "D0", "G17", "G18", "G19", "X1 Y2 Z3", "G91 X1 Z-1 G90"))))
 def test_only_the_last_selection_counts(words):  # type: ignore[no-untyped-def]
     """Whatever was selected before: an absolute point has the offsets of the last D in the last plane, no others."""
@@ -69,7 +70,7 @@ def test_only_the_last_selection_counts(words):  # type: ignore[no-untyped-def]
     assert last(f"{text}\nX20 Y20 Z20\nX7 Y8 Z9", TOOLS["milling"]) == pytest.approx(expected, abs=1e-9)
 
 
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=examples(60), deadline=None, derandomize=True)
 @given(st.tuples(*[LENGTHS] * 8), st.booleans(), st.sampled_from((17, 18, 19)), st.booleans())
 def test_a_tool_and_machine_coordinates(values, fixed, plane, inside):  # type: ignore[no-untyped-def]
     """machine = p between #MCS ON and #MCS OFF, behind it zero + clamp + p + t, wherever D and the plane stand."""

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from lists_support import SMALL, as_bytes, imported, values
+from long_support import examples
 from machine_support import ROOT, MachineBench
 from replay_support import bits
 
@@ -22,7 +23,7 @@ from cnc_ptp.parameters.lists.text import FOREIGN
 
 MACHINES = sorted([*(ROOT / "config").glob("*.yaml"), *(ROOT / "examples" / "spindles").glob("*channels.yaml")])
 SETTINGS = settings(
-    max_examples=60,
+    max_examples=examples(60),
     deadline=None,
     derandomize=True,
     suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow],

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from long_support import long
 from scipy.linalg import expm
 
 from cnc_ptp.parameters.view.matrix_exponential import exponential
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", [*range(5), *long(range(5, 20))])
 def test_random_matrices(seed: int) -> None:
     rng = np.random.default_rng(seed)
     for _ in range(20):

@@ -7,11 +7,14 @@ from typing import Any
 import yaml
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from long_support import examples
 
 from cnc_ptp.parameters import Declaration, MachineParameters, ParameterError, catalogue, load_machine, ros_descriptors
 
 MILL = (Path(__file__).parents[2] / "config" / "mill.yaml").read_text(encoding="utf-8")
-SETTINGS = settings(max_examples=150, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+SETTINGS = settings(
+    max_examples=examples(150), deadline=None, derandomize=True, suppress_health_check=list(HealthCheck)
+)
 UNITS = {"machine": "machine", "channel": "ch", "axis": "x", "spindle": "s"}
 OF_THE_MANUALS = {70350, 70351, 110579, 110591, 110592}
 """Errors that keep the number that a manual gives them."""

@@ -101,7 +101,7 @@ def test_three_thousand_short_blocks_take_the_time_of_a_straight_one() -> None:
     assert_within(states, [AXIS] * 2)
 
 
-@pytest.mark.parametrize("seed", [*range(4), *long(range(4, 20))])
+@pytest.mark.parametrize("seed", [0, *long(range(1, 20))])
 def test_near_the_optimum_of_topp_ra(seed: int) -> None:
     """The same limits of velocity and acceleration; the jerk is so large that it does not count."""
     curve = smooth_curve(seed)

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from long_support import long
 from machine_support import PTP, assert_axis_smooth
 from plcopen_support import PlcBench, outputs
 
@@ -264,7 +265,7 @@ ALL: dict[str, type] = {
 MODES = ("aborting", "aborting", "buffered", "blending_low", "blending_previous", "blending_next", "blending_high")
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", [*range(2), *long(range(2, 6))])
 def test_blocks_in_random_order_on_one_axis(seed: int) -> None:
     """While execute is true one output is; at most one motion is active; all have ended when the axis stands."""
     chance = random.Random(seed)

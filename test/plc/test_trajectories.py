@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from commands_support import call
+from long_support import long
 from machine_support import CYCLE_TIME, PTP, ROOT, MachineBench
 from scipy.interpolate import CubicHermiteSpline
 
@@ -78,7 +79,7 @@ def test_if_one_refuses_none_has_moved() -> None:
     assert bench.last("x").state[-1] == S.STANDSTILL
 
 
-@pytest.mark.parametrize("cycles", [20, 300, 700])
+@pytest.mark.parametrize("cycles", [300, *long([20, 700])])
 @pytest.mark.parametrize(
     ("command", "arguments"),
     [("stop", {}), ("power", {"enabled": False}), ("upstream_lost", {"source": "plc"}), ("halt", {})],

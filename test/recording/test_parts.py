@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import yaml
 from click.testing import CliRunner
+from long_support import long
 from machine_support import PTP, ROOT
 from mcap.reader import make_reader
 from recording_support import MACHINE, Blocks, foreign_file, record
@@ -335,7 +336,7 @@ def test_recovered_parts_take_the_place_of_former_ones(parts, tmp_path):
 
 
 @pytest.mark.parametrize("place", ["recovery._recover_file", "parts._move"])
-@pytest.mark.parametrize("calls", [0, 1, 3])
+@pytest.mark.parametrize("calls", [0, 3, *long([1])])
 @pytest.mark.parametrize("error", [KeyboardInterrupt, OSError(5, "Input/output error")], ids=repr)
 def test_an_interruption_leaves_what_is_there(parts, tmp_path, monkeypatch, place, calls, error):
     output = tmp_path / "saved"

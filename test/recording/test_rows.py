@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from long_support import examples
 from recording_support import smooth_run, time_figure
 
 from cnc_ptp.plots.colours import BY_AXIS, DARK, INK, RED
@@ -171,7 +172,7 @@ def unpacked(column):
     return values
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(
     values=st.lists(st.floats(-1e6, 1e6) | st.just(float("nan")), min_size=1, max_size=200),
     turns=st.integers(0, 3),

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from long_support import long
 from recording_support import MACHINE, Blocks, smooth_run
 
 from cnc_ptp.commands.commissioning.axis_data import FIELDS
@@ -79,7 +80,7 @@ def damaged(path, seed, settings):
 
 
 @pytest.mark.parametrize("settings", [Settings(), Settings(split=Split(seconds=0.2))], ids=["file", "parts"])
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", [1, *long([2])])
 @pytest.mark.parametrize("cut", [0, 20_000])
 def test_the_result_of_a_verification_is_the_same(tmp_path, seed, settings, cut):
     path = tmp_path / "run"

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from long_support import examples
 from recording_support import Blocks, record
 
 from cnc_ptp.errors import CncError
@@ -91,7 +92,7 @@ SAMPLES = [
 ]
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(sample=st.sampled_from(SAMPLES), cycle=st.integers(0, 10 * COUNT - 1))
 def test_a_single_altered_sample_is_found_and_named(path, sample, cycle):
     unit, field = sample

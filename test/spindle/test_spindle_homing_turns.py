@@ -45,7 +45,7 @@ def machine_of(name: str, referenced: bool) -> MachineParameters:
 @pytest.mark.parametrize("machine", ["nc_spindle", "position_feedback"])
 @pytest.mark.parametrize("referenced", [True, False])
 @pytest.mark.parametrize("between", ["", "N15 G04 0.1\n"])
-@pytest.mark.parametrize("words", ["M3 S100", "M4 S250"])
+@pytest.mark.parametrize("words", ["M3 S100", *long(["M4 S250"])])
 def test_g74_and_the_rotation_after_it(machine: str, referenced: bool, between: str, words: str) -> None:
     """The issue: without a dwell G74 never came into Homing, with one Homing went straight to ContinuousMotion."""
     program = f"%P\nN10 G74 S1\n{between}N20 {words}\nN30 G01 Z1 F1000\nN40 M5\nM30"

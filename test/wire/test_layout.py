@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from long_support import examples
 from mcap.records import Schema as McapSchema
 from mcap_ros2.decoder import DecoderFactory
 
@@ -90,7 +91,7 @@ def test_many_states_at_once_are_read_by_the_library(type_name):
     assert np.array_equal(layout.read(data), rows)
 
 
-@settings(max_examples=50)
+@settings(max_examples=examples(50))
 @given(count=st.integers(0, 12), first=st.integers(0, 2**63), values=st.lists(st.floats(), min_size=15, max_size=15))
 def test_layout_of_a_block_gives_the_bytes_of_encode(count, first, values):
     schema = load_schema("cnc_ptp/msg/AxisBlock")
