@@ -278,7 +278,7 @@ def test_a_folder_of_parts_is_recovered_part_by_part(parts, copy, tmp_path):
 
 def test_whole_parts_are_recovered_as_they_are(parts, tmp_path):
     assert recovered(parts, tmp_path / "saved")[1] == [
-        f"{tmp_path / 'saved'}: {sum(1 for _ in iter_messages(parts))} messages"
+        f"{tmp_path / 'saved'}: {sum(1 for _ in iter_messages(parts))} messages, 0 s to 3.499 s"
     ]
     assert equal(states_of(parts), states_of(tmp_path / "saved"))
     assert verify(read_recording(tmp_path / "saved"), replay_blocks).equal
