@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from error_support import refused
-from long_support import long_but
+from long_support import long_but, long_sets
 from machine_support import position_after, seven_phases
 from slave_support import (
     COMPENSATION,
@@ -199,7 +199,7 @@ def test_eight_axes_in_random_order(cascade: bool) -> None:
         assert_linear(bench, "a0", f"a{k}", float(np.prod(factors[1 : k + 1])) if cascade else factors[k])
 
 
-@pytest.mark.parametrize(("period", "sizes"), [(700, (1, 7, 10)), (1000, (10, 1000))])
+@pytest.mark.parametrize(("period", "sizes"), [(1000, (10, 1000)), *long_sets([(700, (1, 7, 10))])])
 def test_block_sizes_change_nothing(period: int, sizes: tuple[int, ...]) -> None:
     """Commands in cycles that all blocks begin at: factor change, override, decoupling and stop give equal bits."""
     commands = [

@@ -128,6 +128,7 @@ def test_random_commands(sequence: list[Step]) -> None:
 
 @given(steps)
 @settings(QUICK, max_examples=examples(10))
+@pytest.mark.long
 def test_random_commands_with_delayed_errors_and_their_replay(sequence: list[Step]) -> None:
     bench = played(sequence, delayed=True)
     for axis in NAMES:

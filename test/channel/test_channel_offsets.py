@@ -288,6 +288,7 @@ SCENARIO = """
 """
 
 
+@pytest.mark.long
 def test_a_run_with_offsets_is_computed_again_bit_by_bit() -> None:
     first = bench("G55 G00 X5\n#MCS ON\nX6\n#MCS OFF\nX7\nM30", SCENARIO).run(4.0)
     blocks = len(first.blocks["channel"])

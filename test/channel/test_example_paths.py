@@ -22,11 +22,9 @@ LATHE = "config/lathe.yaml"
 PAIRS = [
     (MILL, "examples/pocket.nc"),
     *((LATHE, f"examples/threads/{name}.nc") for name in ("chain", "taper", "two_starts")),
-    *((LATHE, f"examples/manual/{name}.nc") for name in ("two_starts", "tapered_thread")),
-    (MILL, "examples/manual/tapping.nc"),
+    (LATHE, "examples/manual/tapered_thread.nc"),
     ("examples/probe.yaml", "examples/probe.nc"),
     *((MILL, f"examples/figures/path_{name}.nc") for name in ("corners", "velocity")),
-    (MILL, "examples/figures/control_circle_feedforward.nc"),
     *(("examples/spindles/nc_spindle.yaml", f"examples/spindles/{name}.nc") for name in ("din", "brackets")),
     *(
         ("examples/spindles/synchronisation.yaml", f"examples/spindles/{name}.nc")
@@ -40,9 +38,11 @@ PAIRS = [
 ]
 LONG = [
     *((MILL, f"examples/{name}") for name in ("bracket.nc", "cover.nc", "tapping.nc", "plate.ngc")),
-    *((MILL, f"examples/{name}.nc") for name in ("manual/tapping_twice", "figures/control_circle")),
+    *((MILL, f"examples/{name}.nc") for name in ("manual/tapping", "manual/tapping_twice")),
     *((LATHE, f"examples/{name}.nc") for name in ("thread", "caxis", "turned_part", "turning", "lathe")),
+    *((MILL, f"examples/figures/control_circle{name}.nc") for name in ("", "_feedforward")),
     *((LATHE, f"examples/{name}.nc") for name in ("threads/longitudinal", "manual/longitudinal_thread")),
+    (LATHE, "examples/manual/two_starts.nc"),
 ]
 CYCLES = {
     81: "G81[-5, 2]", 82: "G82[-5, 2, 0.1]", 83: "G83[-9, 2, 4]", 84: "S200 G84[-8, 2, 1.25, 0.1]", 85: "G85[-5, 2]", 86: "M03 S500\nG86[-5, 2]\nM05", 89: "G89[-5, 2, 0.1]",

@@ -44,6 +44,7 @@ def cutting_time(bench: MachineBench) -> int:
     return np.count_nonzero((np.abs(feeds - 100.0) <= 1e-4) & (speeds > 0.0))
 
 
+@pytest.mark.long
 def test_chords_on_the_cylinder_take_the_time_of_the_plane() -> None:
     """And the smooth curve is within the deviation of them, with the limits of the axes."""
     points = wave()

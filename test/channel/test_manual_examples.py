@@ -65,6 +65,7 @@ def test_tapping_turns_360_deg_for_each_pitch(name, pitch, ends):
         assert z[rows] == pytest.approx(z[start] - pitch * turned, abs=1e-6)
 
 
+@pytest.mark.long
 def test_five_passes_of_the_longitudinal_thread_lie_in_one_groove():
     bench = run("longitudinal_thread")
     x = column(bench, "x", "set_position")[column(bench, "channel", "line") == 5] - THREADING_TOOL[0]

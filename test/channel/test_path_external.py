@@ -383,6 +383,7 @@ def test_at_random_nothing_jumps_and_all_ends(seed: int) -> None:
     assert_no_jump(bench, "y", acceleration=2200.0)
 
 
+@pytest.mark.long
 def test_the_recorded_commands_reproduce_the_run() -> None:
     bench = on_path(way=37.5)
     bench.run(2.0)

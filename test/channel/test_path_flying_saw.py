@@ -298,6 +298,7 @@ def test_at_random_nothing_jumps_and_all_ends(seed: int) -> None:
     assert_no_jump(bench, "y", acceleration=2200.0)
 
 
+@pytest.mark.long
 def test_the_recorded_commands_reproduce_the_run() -> None:
     bench = on_workpiece()
     bench.run(1.0)

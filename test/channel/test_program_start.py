@@ -307,6 +307,7 @@ def test_offsets_count_from_the_start_on(line: int) -> None:
     assert bench.position("x") == 32.0
 
 
+@pytest.mark.long
 def test_two_runs_and_a_replay_are_bit_identical() -> None:
     scenario = """
     - {at: 0.1, to: channel, do: block_skip, enabled: on, level: 3}

@@ -237,6 +237,7 @@ def test_exact_stops_take_the_same_cycles_as_when_all_is_known() -> None:
         assert streamed.blocks[unit] == known.blocks[unit]
 
 
+@pytest.mark.long
 def test_two_runs_and_a_replay_are_equal_to_the_bit() -> None:
     scenario = "- {at: 0.5, to: channel, do: set_override, percent: 40}\n- {at: 0.9, to: channel, do: set_override, percent: 100}"
     parameters = streaming(blocks_per_cycle=1)

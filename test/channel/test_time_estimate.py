@@ -91,7 +91,7 @@ def test_random_programs_take_as_long_as_estimated(seed: int) -> None:
 @pytest.mark.parametrize(
     ("machine", "file", "dialect"),
     [
-        ("config/mill.yaml", "bracket.nc", None),
+        pytest.param("config/mill.yaml", "bracket.nc", None, marks=pytest.mark.long),
         pytest.param("config/mill.yaml", "pocket.nc", None, marks=pytest.mark.long),
         pytest.param("config/mill.yaml", "plate.ngc", "iso", marks=pytest.mark.long),
         pytest.param("config/lathe.yaml", "lathe.nc", None, marks=pytest.mark.long),

@@ -181,7 +181,7 @@ def test_the_cascaded_drive_of_x_with_friction(tmp_path):
     assert yaml.safe_load(again.stdout[again.stdout.index("# Drive of axis x") :]) == yaml.safe_load(path.read_text())
 
 
-@pytest.mark.parametrize(("speed", "heavier"), [(5, False), (20, True)])
+@pytest.mark.parametrize(("speed", "heavier"), [(5, False), *long_sets([(20, True)])])
 def test_a_recording_of_slow_motions_says_that_its_results_are_rough(speed, heavier, tmp_path):
     """Friction shapes slow motions: Ta is off, the inertia may be, but not farther than they say."""
     recording, path = tmp_path / "slow.mcap", tmp_path / "x.yaml"

@@ -284,6 +284,7 @@ def test_the_lists_of_the_mill_are_those_of_its_machine_file() -> None:
     assert written == export_lists(machine_text(mill), str(mill))
 
 
+@pytest.mark.long
 def test_the_mill_of_lists_runs_as_the_mill(tmp_path: Path) -> None:
     files = {path.name: path.read_bytes() for path in (ROOT / "examples" / "lists").iterdir()}
     path = tmp_path / "mill.yaml"

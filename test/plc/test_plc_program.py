@@ -337,6 +337,7 @@ def test_a_unit_that_is_lost_is_an_error_of_its_blocks() -> None:
 # determinism
 
 
+@pytest.mark.long
 def test_two_runs_are_equal_and_the_recorded_commands_reproduce_one_without_the_plc() -> None:
     def make(io: Any) -> Steps:
         x, y, s = io.axis("x"), io.axis("y"), io.spindle("s")

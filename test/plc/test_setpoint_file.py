@@ -293,6 +293,7 @@ def call(*arguments: Any) -> Any:
     return CliRunner().invoke(cli.main, [str(argument) for argument in arguments])
 
 
+@pytest.mark.long
 def test_a_recorded_run_is_replayed_bit_for_bit(tmp_path: Path) -> None:
     """External setpoints from two files, alone and on a PTP motion, with compensation; simulate --record, replay --verify."""
     scenario = (

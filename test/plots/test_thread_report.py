@@ -114,6 +114,7 @@ def test_the_table_has_a_line_for_each_pass(threads):
     assert 75.0 < float(first["to mm"]) < 75.6
 
 
+@pytest.mark.long
 def test_a_dip_of_the_speed_is_in_the_table(tmp_path):
     scenario = "- {at: 2.5, to: s, do: set_override, percent: 90}"
     recorded = record(

@@ -112,6 +112,7 @@ def require_equal_states(recorded: Recorded, again: Recorded) -> None:
             assert rows[name].tobytes() == of_both[name].tobytes(), (topic, name)
 
 
+@pytest.mark.long
 def test_a_run_that_an_hli_and_a_jog_have_moved(tmp_path: Path) -> None:
     """The HLI takes over the override and the functions of the channel, and acknowledges M8 after 0.3 s."""
     run = Run("config/mill.yaml")
