@@ -421,7 +421,7 @@ def test_the_next_element_in_the_withheld_direction_is_held_in_its_own_line() ->
     assert_axis_smooth(bench.blocks["x"], acceleration=5000.0, jerk=1e5)
 
 
-@pytest.mark.parametrize("late", [20, 60])
+@pytest.mark.parametrize("late", [20, *long([60])])
 def test_a_circle_whose_axis_turns_round_while_it_brakes_goes_on(late: int) -> None:
     """x goes backward to X-20, and forward from there: withheld shortly before, the path stops behind the turning."""
     program = "%P\nG01 X20 Y0 F6000\nG02 X20 Y0 I-20 J0 F6000\nM30"

@@ -90,7 +90,7 @@ def test_the_faulty_axis_does_not_follow_its_master_any_more() -> None:
     assert_linear(bench, "y", "z", -0.8, end=error_cycle(bench, "z"))
 
 
-@pytest.mark.parametrize("faulty", ["x", "z"])
+@pytest.mark.parametrize("faulty", ["x", *long(["z"])])
 def test_an_error_of_the_master_or_the_last_slave(faulty: str) -> None:
     """A following error (lag v/Kv = 4 mm of x, 0.8·2 mm of z) beyond its limit."""
     lag = {"following_error_monitoring": True, "following_error_limit": 1.5}
@@ -274,7 +274,7 @@ def test_an_axis_that_is_off_is_not_told() -> None:
 # a master that is lost
 
 
-@pytest.mark.parametrize("slave", ["y", "z"])
+@pytest.mark.parametrize("slave", ["y", *long(["z"])])
 def test_a_lost_master(slave: str) -> None:
     """The watchdog of the slave: it stops on its own ramp, and the group with it."""
     master = {"y": "x", "z": "y"}[slave]

@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from c_axis_support import LATHE, assert_within_limits, errors, on_path, run
+from long_support import long
 from machine_support import ROOT, MachineBench
 from replay_support import bits, replay
 
@@ -99,7 +100,7 @@ def test_blocks_are_run_through() -> None:
     assert all(moving[begin : begin + len(velocity)])
 
 
-@pytest.mark.parametrize("percent", [30, 80])
+@pytest.mark.parametrize("percent", [30, *long([80])])
 def test_override_acts(percent: int) -> None:
     bench = run("#CAX\nG01 C200 F6000\nM30\n", f"- {{at: 0.0, to: channel, do: set_override, percent: {percent}}}")
     assert max(bench.column("s", "set_speed_rpm")) * 6.0 == pytest.approx(percent)

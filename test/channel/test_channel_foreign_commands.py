@@ -22,6 +22,7 @@ from channel_spindle_support import (
     told_at,
     two_channels,
 )
+from long_support import long
 from machine_support import MachineBench
 from spindle_support import RPM, UP, StuckDrive, two_gears
 
@@ -92,7 +93,7 @@ def test_another_command_while_the_path_waits_for_standstill() -> None:
     aborted(bench, "stop as commanded, it was commanded to 300 rpm", 4, "M5")
 
 
-@pytest.mark.parametrize("at", [2.05, 2.3])
+@pytest.mark.parametrize("at", [2.05, *long([2.3])])
 def test_the_plc_positions_a_spindle_that_was_to_stop(at: float) -> None:
     """Its command waits until M5 is finished, or comes after it; the path continues when the spindle is at a standstill."""
     scenario = f"- {{at: {at}, to: s, do: orient, position_deg: 90, speed_rpm: 5, source: plc}}"

@@ -103,7 +103,7 @@ def test_past_the_centre(beside: float) -> None:
     assert_within_limits(bench)
 
 
-@pytest.mark.parametrize("angle", [0.0, 30.0])
+@pytest.mark.parametrize("angle", [30.0, *long([0.0])])
 def test_through_the_centre_on_a_milling_machine(angle: float) -> None:
     program = f"#CAX\nG00 X20 C{angle}\nG92 C{angle}\n#FACE [X, C]\nG01 X-20 F2000\nC10\nX20 C0\n#FACE OFF\nM30\n"
     bench = run(program, machine=lathe(face_kind=2))

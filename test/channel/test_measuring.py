@@ -294,7 +294,7 @@ def test_the_hold_while_it_brakes_changes_nothing() -> None:
     assert bench.position("x") == plain.position("x")
 
 
-@pytest.mark.parametrize("at", [1.0, 2.8])
+@pytest.mark.parametrize("at", [2.8, *long([1.0])])
 def test_reset_in_the_run(at: float) -> None:
     scenario = f"- {{at: {at}, to: channel, do: reset}}\n- {{at: 4, to: channel, do: mdi, text: G0 X0}}\n"
     bench = run("G100 X60 F600\nY5\nM30", scenario)

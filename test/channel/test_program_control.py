@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from long_support import long
+from long_support import long, long_sets
 from machine_support import CYCLE_TIME, MILL, MachineBench, assert_axis_smooth
 from replay_support import bits, replay
 
@@ -95,7 +95,11 @@ def stops(bench: MachineBench) -> list[int]:
 
 @pytest.mark.parametrize(
     ("mode", "lines"),
-    [({}, [1, 2, 3, 4, 5, 6, 7, 8]), ({"mode": "block"}, [1, 2, 3, 4, 5, 6, 7, 8]), ({"mode": "motion"}, [3, 6, 7])],
+    [
+        ({"mode": "block"}, [1, 2, 3, 4, 5, 6, 7, 8]),
+        ({"mode": "motion"}, [3, 6, 7]),
+        *long_sets([({}, [1, 2, 3, 4, 5, 6, 7, 8])]),
+    ],
 )
 def test_single_block_stops_behind_blocks_or_motions(mode: dict[str, str], lines: list[int]) -> None:
     bench = MachineBench(STEPS, start=False, end_when_idle=False).run(0.1)

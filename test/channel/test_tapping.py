@@ -169,7 +169,7 @@ def test_left_hand_thread() -> None:
     assert_follows(bench, -DEGREES_PER_MM)
 
 
-@pytest.mark.parametrize(("pitch", "sense"), [("K1.25", 1.0), ("K-1.25", -1.0)])
+@pytest.mark.parametrize(("pitch", "sense"), [("K-1.25", -1.0), *long_sets([("K1.25", 1.0)])])
 def test_pitch_instead_of_feed(pitch: str, sense: float) -> None:
     bench = run(f"G331 Z-10 {pitch} S200\nG332 Z5 {pitch}\nM30\n")
     assert_follows(bench, sense * DEGREES_PER_MM)

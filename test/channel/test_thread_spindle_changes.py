@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from long_support import long_sets
+from long_support import long, long_sets
 from thread_support import LATHE, MACHINE, Pass, apart, column, cut
 
 from cnc_ptp.parameters import MachineParameters
@@ -125,7 +125,7 @@ def test_a_path_that_learns_too_late_stops_as_soon_as_it_can():
     assert 0.0 < past < 25.0
 
 
-@pytest.mark.parametrize("block_cycles", [25, 40])
+@pytest.mark.parametrize("block_cycles", [25, *long([40])])
 def test_long_blocks_keep_the_limits_while_the_speed_changes(block_cycles):
     """An acceleration of unknown end is taken back gently, not at once."""
     source = random.Random(block_cycles)

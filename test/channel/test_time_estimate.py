@@ -76,7 +76,7 @@ def assert_progress(bench: MachineBench) -> None:
     assert (share[-1], left[-1]) == (1.0, 0.0)
 
 
-@pytest.mark.parametrize("seed", [0, 3, *long([1, 2, *range(4, 30)])])
+@pytest.mark.parametrize("seed", [0, *long([3, 1, 2, *range(4, 30)])])
 def test_random_programs_take_as_long_as_estimated(seed: int) -> None:
     bench = MachineBench(program(*random_lines(random.Random(seed)))).run()
     assert bench.events == []

@@ -60,6 +60,7 @@ def slow_circle(*options):
     return [sys.executable, "-m", "cnc_ptp", *map(str, words)]
 
 
+@pytest.mark.long
 def test_interrupted_runs_stop_on_their_ramps_and_are_status_1(tmp_path):
     recording = tmp_path / "circle.mcap"
     job = slow_circle("--record", recording)

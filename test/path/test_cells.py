@@ -7,6 +7,7 @@ from itertools import pairwise
 from math import inf
 
 import pytest
+from long_support import long
 
 from cnc_ptp.path.geometry import AxisLimits, Line
 from cnc_ptp.path.lookahead.parts import PathPart, UndividedPart, division_of, whole_cell
@@ -15,7 +16,7 @@ from cnc_ptp.path.lookahead.spans import whole
 LIMITS = [AxisLimits(200.0, 2000.0, 2400.0, 40000.0)] * 3
 
 
-@pytest.mark.parametrize("fewest", [1, 3])
+@pytest.mark.parametrize("fewest", [1, *long([3])])
 def test_cells_end_exactly_with_their_part(fewest: int) -> None:
     numbers = random.Random(15)
     for _ in range(300):

@@ -235,7 +235,7 @@ def test_the_block_size_changes_no_number(count: int) -> None:
     assert benches[0].columns() == benches[1].columns()
 
 
-@pytest.mark.parametrize("seed", [0, 1, *long(range(2, 6))])
+@pytest.mark.parametrize("seed", [0, *long([1, *range(2, 6)])])
 def test_seeded_speeds_drives_and_goals(seed: int) -> None:
     draw = random.Random(seed)
     kv, time_constant = draw.uniform(20.0, 60.0), draw.uniform(0.0, 0.005)
