@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 import rclpy
-from client_support import Client
+from client_support import Blocks, Client
 from graph_support import Running, small_machine, verified
 from std_msgs.msg import Bool, Header
 from std_srvs.srv import Trigger
@@ -31,9 +31,9 @@ class PlcClient(Client):
         self.status = {}
         for unit, kind in self.kinds.items():
             if kind in HLI_STATUS:
-                self.status[unit] = []
-                topic = f"/{unit}/hli/status"
-                self.create_subscription(HLI_STATUS[kind], topic, self.status[unit].append, PLC_INPUT)
+                self.status[unit] = Blocks(HLI_STATUS[kind])
+                topic, received = f"/{unit}/hli/status", self.status[unit].serialised.append
+                self.create_subscription(HLI_STATUS[kind], topic, received, PLC_INPUT, raw=True)
 
     def say(self, unit, plc="p1", *, wait=True, valid=True, **fields):
         of, topic = HLI_CONTROL[self.kinds[unit]], f"/{unit}/hli/control"
@@ -100,12 +100,17 @@ def test_the_status_counts_blocks_and_shows_both_units(plc):
     status = plc.sees("x", lambda status: status.valid and not status.held, "a status")
     assert status.override.state_r == 100.0 and status.override.state_hli == 1000
     assert status.controller_enable.state_r and status.feed_enable_forward.state_r and not status.emergency_stop.state_r
-    begin = len(plc.status["x"])
-    plc.spin_until(lambda: len(plc.status["x"]) >= begin + 20, "20 more")
-    signs = [status.life_sign for status in plc.status["x"][begin:]]
-    cycles = [status.cycle for status in plc.status["x"][begin:]]
+    plc.spin_until(lambda: nearly_all(plc.status["x"]), "20 in one time: the machine has caught up with its start")
+    statuses = [plc.status["x"][-20 + n] for n in range(20)]
+    signs = [status.life_sign for status in statuses]
+    cycles = [status.cycle for status in statuses]
     assert [sign - signs[0] for sign in signs] == [(cycle - cycles[0]) // 10 for cycle in cycles]  # once per block
-    assert signs == sorted(set(signs)) and signs[-1] - signs[0] < 30
+    assert signs == sorted(set(signs))
+
+
+def nearly_all(status):
+    """The newest 20: while the machine is late, blocks come faster than this process takes them."""
+    return len(status) > 20 and status[-1].life_sign - status[-20].life_sign < 30
 
 
 def test_the_plc_takes_an_override_over_and_gives_it_back(plc):
@@ -204,7 +209,8 @@ def test_the_life_sign_of_the_plc_holds_what_it_serves(plc):
     plc.say("channel", feed_hold=served(False))
     plc.write("/plc/life_sign", msg.LifeSign, counter=1)
     plc.sees("channel", lambda status: status.feed_hold.state_r, "the feed hold")
-    assert any("feed hold is set on channel, s, x, y" in text for text in plc.told(26103))
+    told = "feed hold is set on channel, s, x, y"
+    plc.spin_until(lambda: any(told in text for text in plc.told(26103)), "its event")
     plc.sees("x", lambda status: status.feed_hold.state_r and not status.feed_hold.enable_r, "that of an axis")
     for unit in ("channel", "x", "y", "s"):
         plc.say(unit, feed_hold=served(False))

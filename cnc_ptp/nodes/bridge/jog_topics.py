@@ -16,7 +16,7 @@ JOG_IN_FREE_RUN = 26145
 PATIENCE = 0.2
 """Seconds without a message after which a jog ends."""
 KNOWN_CLIENTS = 1000
-"""Of whom the numbers of messages are known, and who are told that they are ignored: names may be made up."""
+"""Whose numbers of messages are known, and who hear that they are ignored: names may be made up."""
 SILENCE = f"{PATIENCE * 1000.0:.0f} ms"
 
 
