@@ -279,12 +279,12 @@ class RecorderNode(PollingNode):
             return
         data = with_plain_header(block_class, data, self._recording.stamps)
         codec_of(block_class).check(data, self._block_cycles)  # what units leave out takes no place of a block
-        if unit == PLC:
-            self._last_plc = data
         stamp_ns, first_cycle, count = head_of(data)
         if first_cycle > self._last_tick + self._most_ahead:
             where = f"its first cycle is {first_cycle}, and the newest tick {self._last_tick}"
             raise unreadable(block_class.__name__, data, where)
+        if unit == PLC:
+            self._last_plc = data
         if self._is_new(unit, stamp_ns, first_cycle, count):
             for sink in self._sinks:
                 sink.encoded_block(unit, block_class, data)

@@ -29,9 +29,9 @@ END_SIZE = RECORD_PREFIX.size + 20 + len(MCAP0_MAGIC)
 CHUNK_INDEX = struct.Struct("<QQQQI")
 """First and last time, offset and length of the chunk, bytes of the table that follows."""
 INDEX_OFFSET = struct.Struct("<HQ")
+"""A channel and the offset of its message index."""
 SUMMARY_CRC = struct.Struct("<I")
 NOT_CLOSED = "the file was not closed; what was recorded after its last whole chunk is missing"
-"""A channel and the offset of its message index."""
 
 
 class ChunkPlace(NamedTuple):

@@ -93,6 +93,7 @@ def test_a_mistake_of_ours_is_told_without_a_machine(recording, monkeypatch, cap
             gone = await page.wait_for("gone")
             text = "the server has failed: ZeroDivisionError('division by zero'); the recording is opened again"
             assert (gone["number"], gone["text"]) == (26171, text)
+            await page.wait_for("back")
 
     asyncio.run(story())
     assert "ZeroDivisionError" in capsys.readouterr().err

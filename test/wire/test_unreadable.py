@@ -158,6 +158,8 @@ def test_what_cannot_be_read_takes_no_place_in_a_recording():
     recorder = SimpleNamespace(
         _recording=SimpleNamespace(stamps=STAMPS),
         _block_cycles=10,
+        _last_tick=0,
+        _most_ahead=60_000,
         _last_plc=b"",
         _is_new=lambda *head: taken.append(head),
     )
@@ -167,6 +169,8 @@ def test_what_cannot_be_read_takes_no_place_in_a_recording():
         assert "no message AxisBlock: " in refusal(RecorderNode._on_block, recorder, "x", AxisBlock, wrong)
     plc = encode_block(PlcBlock(10, 10), STAMPS)
     assert "no message PlcBlock: " in refusal(RecorderNode._on_block, recorder, "plc", PlcBlock, plc[:34])
+    far = encode_block(PlcBlock(60_010, 10), STAMPS)
+    assert "the newest tick 0" in refusal(RecorderNode._on_block, recorder, "plc", PlcBlock, far)
     assert (taken, recorder._last_plc) == ([], b"")
     RecorderNode._on_block(recorder, "x", AxisBlock, good)
     RecorderNode._on_block(recorder, "plc", PlcBlock, plc)
