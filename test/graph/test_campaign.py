@@ -4,6 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from long_support import long
 
 from campaign import disks, kills, load
 from campaign.cases import CASES
@@ -12,19 +13,21 @@ from campaign.load import LoadRow
 
 FAULTS = (
     Fault("program", "y", KILL, 0.0, 2.345),
-    Fault("ptp", "c", TERM, 0.0, 1.234),
-    Fault("coupled", "x", KILL, 0.0, 2.123),
     Fault("gantry", "y", HOLD, 0.6, 1.789),
-    Fault("tapping", "supervisor", KILL, 0.0, 2.5),
     Fault("ptp", "recorder", KILL, 0.0, 4.0),
 )
 """Other kinds are in test_kill.py, test_drive_watch.py and test_slaves.py."""
-HELD_CLOCK = Fault("thread", "clock", HOLD, 1.5, 2.5)
+MORE_FAULTS = (
+    Fault("ptp", "c", TERM, 0.0, 1.234),
+    Fault("coupled", "x", KILL, 0.0, 2.123),
+    Fault("tapping", "supervisor", KILL, 0.0, 2.5),
+    Fault("thread", "clock", HOLD, 1.5, 2.5),
+)
 
 
 @pytest.mark.parametrize(
     "fault",
-    [*FAULTS, pytest.param(HELD_CLOCK, marks=pytest.mark.long)],
+    [*FAULTS, *long(MORE_FAULTS)],
     ids=lambda fault: f"{fault.case}-{fault.node}-{fault.signal}",
 )
 def test_a_fault(fault: Fault, tmp_path: Path, ros_domain: int) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 from graph_support import MILL, Running, run, states_equal
-from long_support import long
+from long_support import long, long_sets
 from machine_support import ROOT
 
 from cnc_ptp import cli
@@ -90,7 +90,9 @@ def test_parts_have_checkpoints(tmp_path: Path) -> None:
     assert "both runs are equal to the bit" in result.output
 
 
-@pytest.mark.parametrize(("words", "expected"), [(["--checkpoints", 0], []), ([], [])], ids=["none", "every 10 s"])
+@pytest.mark.parametrize(
+    ("words", "expected"), [*long_sets([(["--checkpoints", 0], [])]), ([], [])], ids=["none", "every 10 s"]
+)
 def test_without_checkpoints_they_are_made_beside_the_recording(
     words: list[object], expected: list[int], tmp_path: Path
 ) -> None:

@@ -115,7 +115,7 @@ def offline(folder):
     return folder / "offline.mcap"
 
 
-@pytest.mark.parametrize("options", [[], ["--free-run"], ["--composed"]], ids=str)
+@pytest.mark.parametrize("options", [[], *long([["--free-run"]]), ["--composed"]], ids=str)
 def test_graph_equals_the_offline_run(folder, offline, options):
     recording = folder / "graph.mcap"
     job = (MILL, "--program", folder / "short.nc", "--scenario", folder / "short.yaml", "--record", recording)

@@ -122,7 +122,7 @@ THREAD_BREAKS_OFF = {
 """By the node that is killed: what the event says of the axes."""
 
 
-@pytest.mark.parametrize("node", ["z", "plc", *long(["s", "x", "channel", "clock"])])
+@pytest.mark.parametrize("node", ["plc", *long(["z", "s", "x", "channel", "clock"])])
 def test_killed_node_while_it_cuts_a_thread(tmp_path, node):
     """The tool leaves the groove by X in step with the spindle, or the path stops in it, as the event says."""
     (tmp_path / "thread.nc").write_text("G18 G90 M03 S400\nG00 X36 Z300\nG33 Z20 K1.5\nM30\n")

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from graph_support import MILL, PTP, run, states_equal, verified
-from long_support import long
+from long_support import long, long_but
 
 from cnc_ptp.recording.reader import read_recording
 
@@ -56,7 +56,7 @@ def folder(tmp_path_factory):
 
 
 @pytest.mark.parametrize("options", [*long([[]]), ["--free-run"], *long([["--composed"]])], ids=str)
-@pytest.mark.parametrize("name", [*JOBS, "moves"])
+@pytest.mark.parametrize("name", long_but([*JOBS, "moves"], ["tool changer", "axis"]))
 def test_a_plc_in_the_graph_equals_the_offline_run(folder, name, options):
     job = {**JOBS, "moves": (PTP, "--plc", folder / "moves.py")}[name]
     recording = folder / "graph.mcap"
@@ -86,7 +86,7 @@ TRIGGERS = {
 
 
 @pytest.mark.parametrize("options", [[], *long([["--composed"]])], ids=str)
-@pytest.mark.parametrize("name", TRIGGERS)
+@pytest.mark.parametrize("name", long_but(TRIGGERS, ["plc_move_axis.py"]))
 def test_a_recording_with_a_trigger_begins_with_the_same_block(folder, name, options):
     condition, holds, before = TRIGGERS[name]
     job = (PTP, "--plc", EXAMPLES / name, "--record-when", condition)

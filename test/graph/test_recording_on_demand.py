@@ -180,6 +180,7 @@ def test_an_error_leaves_a_snapshot(tmp_path):
     assert last - first + 1 in range(1000, 1600)
 
 
+@pytest.mark.long
 def test_parts_of_a_graph_are_those_of_the_run_offline(tmp_path):
     scenario = tmp_path / "story.yaml"
     scenario.write_text(SCENARIO)
