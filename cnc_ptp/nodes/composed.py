@@ -80,6 +80,7 @@ def _run(
     def after() -> None:
         nonlocal next_show
         clock.advance()
+        monitor.take_polled()
         if time.monotonic() >= next_show:
             next_show = time.monotonic() + 0.05
             show(monitor)

@@ -14,7 +14,7 @@ from cnc_ptp.channel.program_report import ProgramReport
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import process
 from cnc_ptp.nodes.client.latest_blocks import LatestBlocks
-from cnc_ptp.nodes.convert import message_of
+from cnc_ptp.nodes.convert import event_of, message_of
 from cnc_ptp.nodes.handover import Handover
 from cnc_ptp.nodes.polling_node import PollingNode, chain
 from cnc_ptp.nodes.topics import (
@@ -33,7 +33,7 @@ from cnc_ptp.nodes.topics import (
 )
 from cnc_ptp.nodes.unit.lateness import Lateness
 from cnc_ptp.parameters import MachineParameters
-from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, PlcBlock, Severity, SpindleBlock
+from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, Event, PlcBlock, Severity, SpindleBlock
 from cnc_ptp.protocol.notes import Note, Notes, error_text
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.protocol.unit_view import UnitView
@@ -81,8 +81,14 @@ class RunMonitor(PollingNode):
         for channel, program in self.programs.items():
             self._need(ChannelBlock, msg.ChannelBlock, channel, program.add)
         self._need(PlcBlock, msg.PlcBlock, PLC, self._on_plc)
-        self.create_subscription(msg.Event, EVENT, self._on_event, EVENTS)
-        self.create_subscription(msg.CommandRecord, COMMAND, self._on_command, EVENTS)
+        # polled: while a subscription is added, the executor of these wheels loses messages of those that are there
+        self.poll(msg.Event, EVENT, chain(event_of, self._on_event), EVENTS)
+        self.poll(
+            msg.CommandRecord,
+            COMMAND,
+            chain(partial(message_of, message_type=msg.CommandRecord), self._on_command),
+            EVENTS,
+        )
         received = self.readable(DIAGNOSTICS, self._on_diagnostics)
         self.create_subscription(DiagnosticArray, DIAGNOSTICS, received, PLC_INPUT, raw=True)
         received = self.readable(LATENESS, self._on_lateness)
@@ -153,7 +159,7 @@ class RunMonitor(PollingNode):
         self.run_done, self._plc_knows_failure = message.run_done, message.run_failed
         self._plc_block = message.first_cycle
 
-    def _on_event(self, message: msg.Event) -> None:
+    def _on_event(self, message: Event) -> None:
         if message.severity == Severity.ERROR and message.source != SUPERVISOR:
             self.errors.append(error_text(message))
             self._last_fault = max(self._last_fault, message.cycle)

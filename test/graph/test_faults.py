@@ -328,7 +328,7 @@ def test_a_fault_in_the_last_block_fails_the_run(around):
 
     def fault(cycle, number):
         errors.publish(msg.Event(cycle=cycle, source="x", severity=Severity.ERROR, error_id=1, text="fault"))
-        spin_until(lambda: len(monitor.errors) == number)
+        spin_until(lambda: monitor.take_polled() or len(monitor.errors) == number)
 
     fault(3, 1)
     assert monitor.run_failed
