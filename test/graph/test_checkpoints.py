@@ -106,6 +106,7 @@ def test_without_checkpoints_they_are_made_beside_the_recording(
     assert "note: computed from the checkpoint at 3 s" in call("replay", path, "--from", 3.2).output
 
 
+@pytest.mark.long
 def test_recordings_on_demand_and_snapshots_have_those_of_their_time_and_one_before(tmp_path: Path) -> None:
     path, snapshot = tmp_path / "late.mcap", tmp_path / "snapshot.mcap"
     words = ("--program", program(tmp_path), "--keep", 5, "--checkpoints", 1, "--stay")
