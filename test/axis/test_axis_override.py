@@ -268,7 +268,7 @@ def test_down_and_up_again_before_the_axis_has_changed_anything(kind: int, cycle
         assert ours == pytest.approx(theirs, abs=1e-3) and ours[0] == pytest.approx(theirs[0], abs=1e-7)
 
 
-@pytest.mark.parametrize("kind", [1, 4, *long([2, 3])])
+@pytest.mark.parametrize("kind", [1, 2, 3, 4])
 @pytest.mark.parametrize("cycle", [141, 200, 239, 300])
 @pytest.mark.parametrize("percent", [0.0, 60.0])
 def test_without_a_stretch_nothing_can_be_changed_once_the_acceleration_falls(
@@ -330,7 +330,7 @@ def test_in_a_stop_the_override_changes_nothing(command: str, percent: float) ->
 
 
 @pytest.mark.parametrize("kind", [1, 2, 3, 4])
-@pytest.mark.parametrize("levels", [(100.0, 20.0), (0.0001, 100.0), *long([(0.0, 100.0), (60.0, 61.0)])])
+@pytest.mark.parametrize("levels", [(0.0, 100.0), (0.0001, 100.0), *long([(100.0, 20.0), (60.0, 61.0)])])
 @pytest.mark.parametrize("pause", [1, *long([7, 90])])
 def test_rapid_toggling_never_steps_and_ends_at_the_target(kind: int, levels: tuple[float, float], pause: int) -> None:
     bench = started(2000.0, 50, override_type=kind)

@@ -11,7 +11,6 @@ from axis_motion_support import assert_follows, legs_to, motion, run_to_standsti
 from axis_states_support import DYNAMICS, STATES, A, J
 from error_support import refused
 from job_support import ABORTED, ACTIVE, DONE, FAILED, end_of, job, start_of, told
-from long_support import long_but
 from machine_support import CYCLE_TIME, UnitBench, assert_axis_smooth, axis_bench
 
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
@@ -474,7 +473,7 @@ def test_a_motion_at_a_velocity_may_be_blended_behind_a_positioning() -> None:
     assert_smooth(bench)
 
 
-@pytest.mark.parametrize("mode", long_but(MODES[1:], MODES[1::2]))
+@pytest.mark.parametrize("mode", [*MODES[1:]])
 def test_the_turn_does_not_depend_on_the_size_of_blocks(mode: str) -> None:
     benches = [blended(mode, SLOW, FAST, count=count) for count in (1000, 1, 7)]
     lengths = min(len(bench.column("state")) for bench in benches)

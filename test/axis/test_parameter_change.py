@@ -10,7 +10,6 @@ from functools import cache
 from typing import Any
 
 import pytest
-from long_support import long_but
 from machine_support import MachineBench
 from replay_support import bits, replay, text_of
 
@@ -118,9 +117,6 @@ CHANGES: dict[str, tuple[Any, dict[str, Any]]] = {
     "P-AXIS-00152": (70000, {}),
 }
 """Parameter -> another value, and what else the machine needs so that it makes a difference."""
-LIKE_OTHERS = {f"P-AXIS-{number:05}" for number in (2, 168, 177, 219, 226, 229, 338, 390, 515)}
-LIKE_OTHERS |= {f"P-COMP-{number}" for number in ("00043", "00045", "00047.0", "00058")} | {"P-MACH-00031"}
-"""The other one of a pair (numerator and denominator, up and down), and more of the friction compensation."""
 
 
 def machine_of(**others: Any) -> MachineParameters:
@@ -158,7 +154,7 @@ def test_each_parameter_that_can_change_is_tried() -> None:
     assert {parameter.partition(".")[0] for parameter in CHANGES} == numbers
 
 
-@pytest.mark.parametrize("parameter", long_but(CHANGES, CHANGES.keys() - LIKE_OTHERS))
+@pytest.mark.parametrize("parameter", CHANGES)
 def test_as_if_the_file_had_had_it_from_the_start(parameter: str) -> None:
     value, others = CHANGES[parameter]
     written = run(machine_of(**others), (parameter, value))

@@ -10,7 +10,7 @@ from axis_motion_support import run_to_standstill
 from axis_states_support import DYNAMICS, STATES
 from error_support import refused
 from job_support import told
-from long_support import long, long_but
+from long_support import long
 from machine_support import MILL, MachineBench, UnitBench, axis_bench, machine
 from slave_support import SlaveBench
 from superposition_support import column
@@ -43,10 +43,7 @@ def assert_moves_alike(bench: UnitBench, alone: UnitBench, at: int, distance: fl
 @pytest.mark.parametrize("distance", [-12.345, *long([1000.0])])
 @pytest.mark.parametrize(
     "name",
-    long_but(
-        [name for name in STATES if name not in ("external", "external_beside", "on_path")],
-        [name for name in STATES if name not in ("external", "external_beside", "on_path")][::2],
-    ),
+    [name for name in STATES if name not in ("external", "external_beside", "on_path")],
 )
 def test_the_motion_is_the_same(name: str, distance: float) -> None:
     bench, alone = pair(name)

@@ -7,7 +7,6 @@ from typing import Any
 
 import pytest
 from axis_states_support import COMMANDS as AXIS_COMMANDS
-from long_support import long_but
 from slave_support import COMPENSATION, DYNAMICS, SlaveBench
 
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
@@ -120,9 +119,6 @@ REDIRECTIONS = ("new_target", "new_velocity_and_target")
 ENABLES = ("external_enable absolute", "external_enable relative")
 COUPLES = ("couple", "couple in a circle", "couple to c")
 DECOUPLES = ("decouple", "decouple target", "decouple velocity")
-
-SHORT = ("moving_slave", "compensating_slave", "slave_on_its_ramp", "pseudo_master", "stopping_pseudo_master", "master")
-"""States in which every text comes up."""
 
 Texts = dict[tuple[str, str], str]
 
@@ -263,7 +259,7 @@ def vars_of(block: Any) -> list[tuple[str, Any]]:
     return [(name, getattr(block, name)) for name in type(block).__dataclass_fields__]
 
 
-@pytest.mark.parametrize("state", long_but(STATES, SHORT))
+@pytest.mark.parametrize("state", STATES)
 def test_every_command_in_every_state(state: str) -> None:
     """Refused commands leave the motion of the whole group bit-identical; the others lead to the state of the table."""
     undisturbed = prepared(state)

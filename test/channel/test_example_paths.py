@@ -11,7 +11,7 @@ from itertools import chain, islice
 from pathlib import Path
 
 import pytest
-from long_support import long, long_but, long_sets
+from long_support import long, long_sets
 from machine_support import MachineBench
 from program_segments import findings
 
@@ -68,7 +68,7 @@ def test_chords_of_a_cam_contour(part: str, tmp_path: Path) -> None:
     assert findings(MILL, str(program)) == []
 
 
-@pytest.mark.parametrize("code", long_but(CYCLES, (81, 83, 84)))
+@pytest.mark.parametrize("code", CYCLES)
 def test_a_cycle_keeps_to_its_path_and_the_axes_to_their_limits(code: int, tmp_path: Path) -> None:
     program = tmp_path / "cycle.nc"
     program.write_text(f"G00 Z10 F300\n{CYCLES[code]}\nX20 Y-10\nG18 {CYCLES[code]}\nG17 Z10\nM30\n")

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from long_support import long
 from machine_support import ROOT, MachineBench, machine
 
 from cnc_ptp.parameters import MachineParameters, OffsetTables, load_machine, machine_text, read_machine
@@ -25,7 +24,7 @@ def place(program: str, *, on: bool = True) -> tuple[float, float]:
     return bench.position("x"), bench.position("z")
 
 
-@pytest.mark.parametrize("code", ["G51", *long(["G52"])])
+@pytest.mark.parametrize("code", ["G51", "G52"])
 @pytest.mark.parametrize(
     ("program", "radius", "diameter"),
     [

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from long_support import long, long_sets
+from long_support import long
 from machine_support import CYCLE_TIME, MILL, MachineBench, assert_axis_smooth
 from replay_support import bits, replay
 
@@ -98,7 +98,7 @@ def stops(bench: MachineBench) -> list[int]:
     [
         ({"mode": "block"}, [1, 2, 3, 4, 5, 6, 7, 8]),
         ({"mode": "motion"}, [3, 6, 7]),
-        *long_sets([({}, [1, 2, 3, 4, 5, 6, 7, 8])]),
+        ({}, [1, 2, 3, 4, 5, 6, 7, 8]),
     ],
 )
 def test_single_block_stops_behind_blocks_or_motions(mode: dict[str, str], lines: list[int]) -> None:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from long_support import long, long_sets
+from long_support import long
 from machine_support import MachineBench
 from thread_support import HEAD, LATHE, NO_RETRACT, Pass, apart, assert_within_limits, column, cut, lathe, texts
 
@@ -246,9 +246,7 @@ def test_what_ends_a_thread_before_its_end(command, reason, without, retracts):
         assert abs(phases - np.median(phases)).max() * 1.5 / 360.0 < 0.005
 
 
-@pytest.mark.parametrize(
-    ("command", "end"), [("X-4", 32.0), ("OFF", 36.0), *long_sets([("X[2 * 3]", 42.0), ("Z3", 36.0)])]
-)
+@pytest.mark.parametrize(("command", "end"), [("X-4", 32.0), ("OFF", 36.0), ("X[2 * 3]", 42.0), ("Z3", 36.0)])
 def test_a_program_says_how_the_tool_leaves_its_threads(command, end):
     """In a bore towards the centre; the path follows the spindle meanwhile as with the retract of the machine."""
     bench = cut(f"#THREAD RETRACT {command}\n{THREAD}", "- {at: 3.0, to: channel, do: reset}")

@@ -220,7 +220,7 @@ def test_few_commands_where_the_diameter_stays() -> None:
     assert set_speeds(bench)[0] == pytest.approx(set_speeds(bench)[1])
 
 
-@pytest.mark.parametrize("synchronisation", ["NO_SYNCH", *long(["MVS_SLM", "MVS_SVS", "MVS_SNS"])])
+@pytest.mark.parametrize("synchronisation", ["NO_SYNCH", "MVS_SLM", "MVS_SVS", "MVS_SNS"])
 def test_no_synchronisation_stops_the_path_in_the_cut(synchronisation: str) -> None:
     """S of G96 is waited for at most once; what follows the facing axis is not."""
     main, driven = LATHE.channels["channel"].spindles

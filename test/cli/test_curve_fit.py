@@ -7,7 +7,6 @@ import re
 import pytest
 import yaml
 from commands_support import MILL, call, changed_mill, paste
-from long_support import long
 
 from cnc_ptp.commands.commissioning.curve_report import curve_yaml, rounded
 from cnc_ptp.commissioning.curve_fit import curve_fault, fit_curve
@@ -80,7 +79,7 @@ def test_the_manual_s_hyperbola_and_what_four_points_make_of_it():
     assert [row[4] for row in rows(four.stdout)] == [0.0, 22.255, -59.29, 48.746]
 
 
-@pytest.mark.parametrize("kind", ["polynomial", *long(["hyperbola"])])
+@pytest.mark.parametrize("kind", ["polynomial", "hyperbola"])
 def test_a_machine_takes_the_lines_and_the_time_is_that_of_its_spindle(kind, tmp_path):
     """The coefficients come to the kernel as they are printed; speed reached after the time that was printed."""
     points = POINTS if kind == "polynomial" else POINTS[:3]

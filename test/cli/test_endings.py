@@ -11,7 +11,6 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
-from long_support import long
 
 from cnc_ptp import cli
 from cnc_ptp.commands.run.replay import replay_blocks
@@ -39,7 +38,7 @@ def wait_for_size(path, size):
         time.sleep(0.01)
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, *long([signal.SIGTERM])])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_interrupted_simulation_stops_on_its_ramps(number, tmp_path):
     recording = tmp_path / "run.mcap"
     job = command("simulate", MILL, "--program", BRACKET, "--duration", 1e6, "--record", recording)
