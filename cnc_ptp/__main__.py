@@ -25,7 +25,7 @@ def _entry(*command: str) -> Callable[[], object]:
                 print(f"{KERNEL}; {KERNEL.remedy}", file=sys.stderr)
             return main.main(args=[*command, *sys.argv[1:]], prog_name="cnc_ptp")
         except ImportError as error:
-            if is_installed(error):
+            if is_our_mistake(error):
                 raise
             print(f"cnc_ptp is not installed completely ({error}); call `make setup` first", file=sys.stderr)
             sys.exit(2)
@@ -33,8 +33,8 @@ def _entry(*command: str) -> Callable[[], object]:
     return call
 
 
-def is_installed(error: ImportError) -> bool:
-    """Whether the error is a mistake in cnc_ptp itself: no package of others and no ROS interfaces are missing."""
+def is_our_mistake(error: ImportError) -> bool:
+    """It lies in cnc_ptp itself: neither a package of others nor the ROS interfaces are missing."""
     interfaces = Path(__file__).with_name("msg") / "__init__.py"
     return (error.name or "").partition(".")[0] == "cnc_ptp" and interfaces.is_file()
 

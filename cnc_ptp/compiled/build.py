@@ -41,8 +41,8 @@ def build(folder: Path) -> str:
     state = hashes(files | recipe())
     if read_state(folder) == state and library_file(folder).is_file():
         return ""
-    print(f"Compiling the kernel, {len(files)} sources (one to three minutes on two cores) ...", file=sys.stderr)
-    write_state(folder, {FAILURE: "its compilation was interrupted", **state})
+    print(f"Compiling the kernel, {len(files)} sources (three to six minutes on two cores) ...", file=sys.stderr)
+    write_state(folder, {FAILURE: "it is being compiled, or its compilation was interrupted", **state})
     work = PACKAGE.parent / "build" / f"kernel-{sys.implementation.cache_tag}"
     failure = ""
     try:

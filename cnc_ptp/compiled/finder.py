@@ -14,9 +14,6 @@ from types import ModuleType
 
 from cnc_ptp.compiled.sources import FAILURE, LIBRARY, NAME, hashes, library_file, read_state, recipe, sources
 
-UNFINISHED = "its compilation was interrupted"
-"""What `build` writes before it compiles, and what it is then."""
-UNDER_WAY = "it is being compiled, or its compilation was interrupted"
 INTERPRET = "CNC_PTP_PURE"
 """Environment variable: 1 chooses the interpreted kernel."""
 
@@ -70,7 +67,7 @@ class Kernel:
         elif change := changed(built, hashes(present | recipe())):
             self.interpreted_because = f"{change} since {'its compilation failed' if failure else 'it was compiled'}"
         elif failure:
-            self.interpreted_because = UNDER_WAY if failure == UNFINISHED else failure
+            self.interpreted_because = failure
         else:
             self._load(KernelFinder(present))
         if self.interpreted_because:

@@ -81,14 +81,10 @@ class RunMonitor(PollingNode):
         for channel, program in self.programs.items():
             self._need(ChannelBlock, msg.ChannelBlock, channel, program.add)
         self._need(PlcBlock, msg.PlcBlock, PLC, self._on_plc)
-        # polled: while a subscription is added, the executor of these wheels loses messages of those that are there
+        # polled: the executor of these wheels did not call for some of the last events of a run
+        command_of = partial(message_of, message_type=msg.CommandRecord)
         self.poll(msg.Event, EVENT, chain(event_of, self._on_event), EVENTS)
-        self.poll(
-            msg.CommandRecord,
-            COMMAND,
-            chain(partial(message_of, message_type=msg.CommandRecord), self._on_command),
-            EVENTS,
-        )
+        self.poll(msg.CommandRecord, COMMAND, chain(command_of, self._on_command), EVENTS)
         received = self.readable(DIAGNOSTICS, self._on_diagnostics)
         self.create_subscription(DiagnosticArray, DIAGNOSTICS, received, PLC_INPUT, raw=True)
         received = self.readable(LATENESS, self._on_lateness)

@@ -211,7 +211,7 @@ class PlcBridgeNode(UnitNode):
         super().destroy_node()
 
     def after_block(self, block: CycleBlock) -> None:
-        """HLI and joint states of the cycle before the block: the last one that axes and spindles have reported."""
+        """Ends silent jogs. HLI and joint states are of the last cycle that axes and spindles have reported."""
         self._watch_jogs()
         if isinstance(block, PlcBlock):
             self._hli_topics.publish(self.plc, block, self.stamp)

@@ -51,8 +51,6 @@ class Hub:
         self.shared: View | None = None
         """Of all pages of a machine that runs."""
         self._views: list[View] = []
-        self._is_recording = False
-        """What was shown last."""
         self.why_none = WAITING
         """Why there is no machine now."""
         self._tasks: list[asyncio.Task[None]] = []
@@ -112,7 +110,7 @@ class Hub:
             running.cancel()
 
     def _begin_with(self, face: Face) -> None:
-        self.face, self._views, self._is_recording = face, [], face.is_recording
+        self.face, self._views = face, []
         self.programs = ProgramWatch(self.folder, is_recording=face.is_recording)
         self.programs.take_state({}, face.last_loads())
         self.shared = None if face.is_recording else self._view(face, self.programs)
@@ -122,7 +120,7 @@ class Hub:
             session.send(self.hello(session))
 
     def _failed(self, error: Exception) -> CncError:
-        continues = "the recording is opened again" if self._is_recording else "the machine continues"
+        continues = "the recording is opened again" if self.programs.is_recording else "the machine continues"
         return CncError(GONE, f"the server has failed: {error!r}", continues)
 
     def _tell_gone(self, error: CncError) -> None:

@@ -36,11 +36,11 @@ def test_a_missing_package_is_one_line(package: str, words: tuple[str, ...], tmp
 
 def test_missing_interfaces_are_no_mistake_of_ours(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     error = ImportError("cannot import name 'msg' from 'cnc_ptp'", name="cnc_ptp")
-    assert entry.is_installed(error)
+    assert entry.is_our_mistake(error)
     monkeypatch.setattr(entry, "__file__", str(tmp_path / "__main__.py"))
-    assert not entry.is_installed(error)
+    assert not entry.is_our_mistake(error)
 
 
 def test_a_mistake_of_ours_keeps_its_traceback() -> None:
-    assert entry.is_installed(ImportError("cannot import name 'x' from 'cnc_ptp.cli'", name="cnc_ptp.cli"))
-    assert not entry.is_installed(ModuleNotFoundError("No module named 'rich.box'", name="rich.box"))
+    assert entry.is_our_mistake(ImportError("cannot import name 'x' from 'cnc_ptp.cli'", name="cnc_ptp.cli"))
+    assert not entry.is_our_mistake(ModuleNotFoundError("No module named 'rich.box'", name="rich.box"))

@@ -155,7 +155,6 @@ def test_a_failure_counts_until_a_source_changes(tmp_path: Path, monkeypatch: py
         {},
         {FAILURE: "it failed", **state},
         {FAILURE: "it failed", **state, "cnc_ptp.axis.axis_unit": "0"},
-        {FAILURE: "its compilation was interrupted", **state},
     ):
         write_state(tmp_path, kept)
         kernel = finder_module.Kernel()
@@ -165,7 +164,6 @@ def test_a_failure_counts_until_a_source_changes(tmp_path: Path, monkeypatch: py
         ("it was not compiled", "make setup compiles it again"),
         ("it failed", "make setup compiles it again"),
         ("cnc_ptp/axis/axis_unit.py has changed since its compilation failed", "make setup compiles it again"),
-        ("it is being compiled, or its compilation was interrupted", "make setup compiles it again"),
     ]
 
 

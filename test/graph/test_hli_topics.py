@@ -100,7 +100,7 @@ def test_the_status_counts_blocks_and_shows_both_units(plc):
     status = plc.sees("x", lambda status: status.valid and not status.held, "a status")
     assert status.override.state_r == 100.0 and status.override.state_hli == 1000
     assert status.controller_enable.state_r and status.feed_enable_forward.state_r and not status.emergency_stop.state_r
-    plc.spin_until(lambda: nearly_all(plc.status["x"]), "20 in one time: the machine has caught up with its start")
+    plc.spin_until(lambda: has_caught_up(plc.status["x"]), "20 in one time: the machine has caught up with its start")
     statuses = [plc.status["x"][-20 + n] for n in range(20)]
     signs = [status.life_sign for status in statuses]
     cycles = [status.cycle for status in statuses]
@@ -108,7 +108,7 @@ def test_the_status_counts_blocks_and_shows_both_units(plc):
     assert signs == sorted(set(signs))
 
 
-def nearly_all(status):
+def has_caught_up(status):
     """The newest 20: while the machine is late, blocks come faster than this process takes them."""
     return len(status) > 20 and status[-1].life_sign - status[-20].life_sign < 30
 

@@ -44,7 +44,7 @@ class ProgramWatch:
     def __init__(self, folder: ProgramFolder, *, is_recording: bool = False) -> None:
         """Of a recording nothing is read but what it has."""
         self._folder = folder
-        self._is_recording = is_recording
+        self.is_recording = is_recording
         self.loaded: dict[str, Load] = {}
         self._known: dict[str, list[Load]] = {}
         self._untold: list[str] = []
@@ -95,7 +95,7 @@ class ProgramWatch:
         for each, load in self.loaded.items():
             if load.name == name and channel in ("", each):
                 return self._text(each)
-        if self._is_recording:
+        if self.is_recording:
             raise no_text(f"program '{name[:80]}'")
         return self._folder.text(name)
 
@@ -108,7 +108,7 @@ class ProgramWatch:
 
     def _text(self, channel: str) -> str:
         load = self.loaded[channel]
-        if load.text is None and self._is_recording:
+        if load.text is None and self.is_recording:
             raise no_text(f"program '{load.name}'")
         return read_file("program", load.path) if load.text is None else load.text
 
