@@ -36,12 +36,17 @@ def close_cut(path: str | Path) -> str:
 
 
 def close_cut_recording(path: str | Path) -> str:
-    """close_cut for a file, or for the parts of a folder, whose `metadata.yaml` then lists all of them."""
+    """close_cut for a file, or for the parts of a folder, whose `metadata.yaml` then lists all of them.
+
+    A folder without parts is unchanged: the first one could not be written.
+    """
     folder = Path(path)
     if not folder.is_dir():
         return close_cut(path)
-    missing = "; ".join(filter(None, [close_cut(part) for part in begun_parts(folder, folder.stem)]))
-    describe_folder(folder)
+    parts = begun_parts(folder, folder.stem)
+    missing = "; ".join(filter(None, [close_cut(part) for part in parts]))
+    if parts:
+        describe_folder(folder)
     return missing
 
 

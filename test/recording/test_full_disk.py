@@ -13,6 +13,7 @@ from cnc_ptp.client import Machine
 from cnc_ptp.commands.output_file import write_output
 from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import CycleTick
+from cnc_ptp.recording.closing import close_cut_recording
 from cnc_ptp.recording.reader import read_recording
 from cnc_ptp.recording.recovery import recover
 from cnc_ptp.recording.settings import Settings, Split
@@ -77,6 +78,17 @@ def test_a_file_that_cannot_be_begun_is_not_left(disk):
         f"P-ERR-26007 recording {path}: cannot be written: {NO_SPACE}; nothing is in it"
     )
     assert not path.exists()
+
+
+def test_a_first_part_that_cannot_be_begun_leaves_nothing_to_be_closed(disk):
+    folder = disk / "run"
+    folder.mkdir()
+    leave(disk, 0)
+    assert refusal(lambda: Recording(folder, MACHINE, settings=SPLIT)) == (
+        f"P-ERR-26007 recording {folder}/run_0.mcap: cannot be written: {NO_SPACE}; nothing is in it"
+    )
+    assert close_cut_recording(folder) == ""
+    assert not [*folder.iterdir()]
 
 
 def test_a_full_disk_leaves_the_former_page(disk):
