@@ -75,13 +75,14 @@ def replacing(output: str | Path) -> Iterator[Path]:
 
 
 def no_folder(output: str | Path) -> str:
-    """Why a file or a folder cannot be made there."""
+    """Why a file or a folder cannot be made where its own folder is missing."""
     return f"there is no folder {Path(os.path.realpath(output)).parent}, make it or give another name"
 
 
 def why_not_made(error: OSError, output: str | Path) -> str:
     """Why `output` cannot be made."""
-    return no_folder(output) if isinstance(error, FileNotFoundError) else str(error.strerror)
+    missing = isinstance(error, FileNotFoundError) and not Path(os.path.realpath(output)).parent.exists()
+    return no_folder(output) if missing else str(error.strerror)
 
 
 def why_not_written(error: OSError) -> str:

@@ -178,9 +178,10 @@ class RunInputs:
         return self._attachments[name].index.attached(name) if name in self._attachments else b""
 
     def _end(self) -> int:
-        """By the time of the last state. One altered number must not make it endless, so others have to confirm it:
+        """By the time of the last message in any chunk that may have states.
 
-        the last tick, or the number of cycles that a unit recorded.
+        One altered number must not make it endless, so others have to confirm it: the last tick, or the number of
+        cycles that a unit recorded.
         """
         times = [chunk.last_ns for part in self._parts for chunk in part.state_chunks()]
         states: Counter[str] = Counter()

@@ -355,6 +355,14 @@ def test_path_that_cannot_be_created(tmp_path):
     )
 
 
+def test_a_folder_that_takes_no_file_is_not_called_missing():
+    with pytest.raises(CncError) as error:
+        Recording("/proc/run.mcap", MACHINE)
+    assert str(error.value) == (
+        "P-ERR-26007 recording /proc/run.mcap cannot be written: No such file or directory; nothing is recorded"
+    )
+
+
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
 def test_full_disk():
     with pytest.raises(CncError) as error:
