@@ -93,18 +93,29 @@ def _run(
         if not (options.stay and monitor.note_ending(name)):
             failures.append(end.text("everything was stopped on its ramps"))
 
-    end = EndRequest()
     failures: list[str] = []
-    try:
-        process.spin(
-            nodes, done=lambda: done() or stopped(end, nodes, note=note_ending), wait=clock.wait_time, after=after
-        )
-    except CncError as error:
-        failures.append(str(error) if clock.done else f"{error}; the run ends")
-    if recorder is not None and recorder.failure is not None:
-        failures += close_recordings(options, monitor)
-    end.restore()
+    raised: CncError | None = None
+    with EndRequest() as end:
+        try:
+            process.spin(
+                nodes, done=lambda: done() or stopped(end, nodes, note=note_ending), wait=clock.wait_time, after=after
+            )
+        except CncError as error:
+            raised = error
+            failures.append(str(error) if clock.done else f"{error}; the run ends")
+        if recorder is not None:
+            failures += close_after_failure(recorder, raised, options, monitor)
     return monitor, failures
+
+
+def close_after_failure(
+    recorder: RecorderNode, raised: CncError | None, options: RunOptions, monitor: RunMonitor
+) -> list[str]:
+    """Closes what a recorder that has failed has begun; its error, unless that was `raised`, and what follows it."""
+    if recorder.failure is None:
+        return []
+    told = [] if recorder.failure is raised else [str(recorder.failure)]
+    return told + (close_recordings(options, monitor) if recorder.has_begun else [])
 
 
 def stopped(end: EndRequest, nodes: list[Node], *, note: Callable[[], None]) -> bool:

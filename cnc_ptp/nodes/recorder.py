@@ -24,6 +24,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import convert, node_command_line, process
 from cnc_ptp.nodes.events import ROSOUT, EventPublisher
+from cnc_ptp.nodes.free_run import RECORDER_BLOCKS
 from cnc_ptp.nodes.handover import Handover
 from cnc_ptp.nodes.live_stream import LiveServer, live_stream
 from cnc_ptp.nodes.observed_topics import observed_topics, type_name
@@ -73,8 +74,6 @@ STALE = 0.2
 """Seconds in which it gets what has waited for it."""
 QUIET = 0.2
 """Seconds without a message after which a recorder that is to end has seen everything."""
-ALONE = 60.0
-"""Seconds for which units may compute without a tick: without a clock they stop on their ramps."""
 LOOK_PERIOD = 0.05
 """Seconds between two looks for ticks and blocks."""
 
@@ -119,7 +118,7 @@ class RecorderNode(PollingNode):
         self._path = path
         self._cycle_ns = machine.cycle_time_us * 1000
         self._block_cycles = machine.block_cycles
-        self._most_ahead = round(ALONE * 1e6 / machine.cycle_time_us)
+        self._most_ahead = RECORDER_BLOCKS * machine.block_cycles
         self._free_run = False
         self._tick_ns = 0
         self._last_tick = -1
@@ -215,6 +214,11 @@ class RecorderNode(PollingNode):
             self._resumed_at = -inf  # once
 
     @property
+    def has_begun(self) -> bool:
+        """With the first tick; a file at its place before that is one of an earlier run."""
+        return self._recording is not None
+
+    @property
     def settled(self) -> bool:
         """Nothing has arrived for a while since the clock has ended: it may have to say that drives have braked."""
         if any(each.get_publisher_count() for each in self._needed[:1]):
@@ -232,7 +236,7 @@ class RecorderNode(PollingNode):
 
     def _on_tick(self, message: Tick) -> None:
         self._heard = self._ticked_at = time.monotonic()
-        self._tick_ns = message.stamp_ns
+        self._tick_ns, self._last_tick = message.stamp_ns, message.first_cycle
         if self._recording is None:
             start_ns = self._tick_ns - message.first_cycle * self._cycle_ns
             self._free_run = not message.scheduled_monotonic_ns
@@ -245,7 +249,6 @@ class RecorderNode(PollingNode):
             for record in self._early:
                 record()
             self._early.clear()
-        self._last_tick = message.first_cycle
         if message.count:
             tick = CycleTick(message.first_cycle, message.count)
             for sink in self._sinks:
@@ -280,8 +283,9 @@ class RecorderNode(PollingNode):
         data = with_plain_header(block_class, data, self._recording.stamps)
         codec_of(block_class).check(data, self._block_cycles)  # what units leave out takes no place of a block
         stamp_ns, first_cycle, count = head_of(data)
-        if first_cycle > self._last_tick + self._most_ahead:
-            where = f"its first cycle is {first_cycle}, and the newest tick {self._last_tick}"
+        most = max(self._last_tick, self._next_cycle[unit]) + self._most_ahead  # a unit may go on without a clock
+        if first_cycle > most:
+            where = f"its first cycle is {first_cycle}, and at most {most} is possible now"
             raise unreadable(block_class.__name__, data, where)
         if unit == PLC:
             self._last_plc = data

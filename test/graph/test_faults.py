@@ -40,12 +40,13 @@ from cnc_ptp.nodes.topics import (
     block_topic,
 )
 from cnc_ptp.parameters import read_machine
-from cnc_ptp.protocol.blocks import CommandRecord, PlcBlock, Severity
+from cnc_ptp.protocol.blocks import AxisBlock, CommandRecord, PlcBlock, Severity
 from cnc_ptp.recording.reader import read_recording
 from cnc_ptp.recording.run_inputs import RunInputs
 from cnc_ptp.recording.writing_place import require_writable
 from cnc_ptp.wire.block_codec import encode_block
 from cnc_ptp.wire.stamps import Stamps
+from cnc_ptp.wire.ticks import Tick
 
 STAMPS = Stamps(0, 1_000_000)
 UNITS = ("plc", "x", "y", "z", "c")
@@ -184,7 +185,8 @@ def test_blocks_behind_the_stop_of_a_drive_are_not_recorded(around, tmp_path):
 
 
 @pytest.mark.motion_unchecked("random numbers")
-def test_a_block_that_is_far_ahead_of_the_clock_costs_none_of_those_that_follow(around, tmp_path):
+@pytest.mark.parametrize("foreign", [2011, 60_010])
+def test_a_block_that_is_far_ahead_of_the_clock_costs_none_of_those_that_follow(around, tmp_path, foreign):
     path = tmp_path / "a.mcap"
     outside, recorder, spin_until = around(lambda: RecorderNode(read_machine(str(PTP)), str(path), PTP.read_text()))
     blocks = Blocks(1)
@@ -193,15 +195,43 @@ def test_a_block_that_is_far_ahead_of_the_clock_costs_none_of_those_that_follow(
     told = []
     recorder.tell_unreadable = told.append
     outside.ticks.publish(msg.CycleTick(first_cycle=0, count=10))
-    for first_cycle in (0, 60_010, 10):
+    for first_cycle in (0, foreign, 10):
         axis.publish(encode_block(blocks.axis(first_cycle), STAMPS))
     spin_until(lambda: recorder._next_cycle["x"] == 20)
     recorder.destroy_node()
     assert read_recording(path).states["/x/state"]["cycle"].tolist() == list(range(20))
     (text,) = told
     assert text.startswith("recorder: topic x/block: ") and text.endswith(
-        " bytes are no message AxisBlock: its first cycle is 60010, and the newest tick 0; they are ignored"
+        f" bytes are no message AxisBlock: its first cycle is {foreign}, and at most 2010 is possible now; they are ignored"
     )
+
+
+@pytest.mark.motion_unchecked("random numbers")
+def test_a_unit_that_goes_on_without_a_clock_is_recorded_to_its_standstill(around, tmp_path):
+    """Also when the clock comes back far behind it."""
+    path = tmp_path / "a.mcap"
+    _, recorder, _ = around(lambda: RecorderNode(read_machine(str(PTP)), str(path), PTP.read_text()))
+    blocks = Blocks(1)
+    recorder._on_tick(Tick(0, 10, 1, 0))
+    for first_cycle in range(0, 5000, 10):
+        recorder._on_block("x", AxisBlock, encode_block(blocks.axis(first_cycle), STAMPS))
+    recorder._on_tick(Tick(10, 10, 1, 10_000_000))
+    recorder._on_block("x", AxisBlock, encode_block(blocks.axis(5000), STAMPS))
+    recorder.destroy_node()
+    assert read_recording(path).states["/x/state"]["cycle"].tolist() == list(range(5010))
+
+
+@pytest.mark.motion_unchecked("random numbers")
+def test_a_block_that_comes_before_the_first_tick_is_recorded_at_a_machine_that_has_run_for_long(around, tmp_path):
+    """A recorder that is started by hand."""
+    path = tmp_path / "a.mcap"
+    _, recorder, _ = around(lambda: RecorderNode(read_machine(str(PTP)), str(path), PTP.read_text()))
+    told = []
+    recorder.tell_unreadable = told.append
+    recorder._on_block("x", AxisBlock, encode_block(Blocks(1).axis(600_000), STAMPS))
+    recorder._on_tick(Tick(600_000, 10, 1, 600_000_000_000))
+    recorder.destroy_node()
+    assert told == [] and read_recording(path).states["/x/state"]["cycle"].tolist() == list(range(600_000, 600_010))
 
 
 def test_states_that_no_unit_has_sent_are_left_out(around, tmp_path):
