@@ -32,17 +32,18 @@ from cnc_ptp.nodes.client.jog_sender import JogSender
 from cnc_ptp.nodes.client.latest_blocks import GONE as SILENCE
 from cnc_ptp.nodes.client.latest_blocks import GONE_TEXT
 from cnc_ptp.nodes.client.machine_client import NO_ANSWER, PATIENCE, MachineClient
+from cnc_ptp.nodes.polling_node import chain
 from cnc_ptp.nodes.process import take_priority
 from cnc_ptp.nodes.topics import BLOCK_CLASSES, BLOCK_TYPES, BLOCKS, COMMAND, EVENT, block_topic
 from cnc_ptp.parameters import ParameterSet, read_machine
 from cnc_ptp.parameters.errors import Place
 from cnc_ptp.parameters.read.parameter_set import Given
-from cnc_ptp.protocol.blocks import CommandRecord, Event, PlcBlock, read_values
+from cnc_ptp.protocol.blocks import CommandRecord, CycleBlock, Event, PlcBlock, read_values
 from cnc_ptp.protocol.jobs import JobStatus
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.recording.overwriting import check_recording
 from cnc_ptp.recording.recorder_options import RecorderOptions, check_recorder
-from cnc_ptp.wire.block_codec import BlockCodec, codec_of
+from cnc_ptp.wire.block_codec import codec_of
 
 FROM_NOW_ON = QoSProfile(depth=1000, reliability=QoSReliabilityPolicy.RELIABLE)
 SomeLink = TypeVar("SomeLink", bound="GraphLink")
@@ -92,7 +93,7 @@ class GraphLink(Link):
     def _subscribe(self, client: MachineClient) -> None:
         client.kinds = dict(self.kinds)
         for unit, kind in self.kinds.items():
-            take = partial(self._take_data, unit, codec_of(BLOCK_CLASSES[kind]))
+            take = chain(codec_of(BLOCK_CLASSES[kind]).decode, partial(self._take_block, unit))
             client.poll(BLOCK_TYPES[kind], block_topic(unit), take, BLOCKS)
         client.poll(msg.Event, EVENT, self._take_event, self.event_quality)
         client.poll(msg.CommandRecord, COMMAND, self._take_record, self.event_quality)
@@ -113,8 +114,7 @@ class GraphLink(Link):
 
     # in the thread
 
-    def _take_data(self, unit: str, codec: BlockCodec, data: bytes) -> None:
-        block = codec.decode(data)
+    def _take_block(self, unit: str, block: CycleBlock) -> None:
         self._heard = time.monotonic()
         self._note(partial(self.seen.take_block, unit, block))
 

@@ -9,7 +9,6 @@ from cnc_ptp.client.faults import unknown_unit
 from cnc_ptp.errors import CncError, nearest_name
 from cnc_ptp.web.access.rights import is_stop, require_page_command, require_role, role_for
 from cnc_ptp.web.commissioning.commissioning_messages import CommissioningMessages
-from cnc_ptp.web.faces.alarms import acknowledged_text
 from cnc_ptp.web.faces.recorded_face import RecordedFace
 from cnc_ptp.web.faces.scope import Stream, read_signals
 from cnc_ptp.web.jog import Jogs
@@ -186,12 +185,12 @@ class PageMessages:
     def _acknowledge(self, message: Message) -> None:
         require_role("acknowledge", self._session.user, self._session.role, "operator")
         view = self._view()
-        user = self._session.user
-        alarms = view.alarms.acknowledge(field(message, "alarm", "integer", None), user)
-        self._session.send(answer(message, warning=view.alarms.keep(alarms)))
-        if alarms:
-            self._hub.note(f"{user}: acknowledged {acknowledged_text(alarms)}")
-        view.to_all({"type": "acknowledged", "alarms": [alarm["alarm"] for alarm in alarms], "user": user})
+        numbers = view.alarms.acknowledge(field(message, "alarm", "integer", None), self._session.user)
+        self._session.send(answer(message))
+        if numbers:
+            shown = ", ".join(map(str, numbers[:10])) + (" …" if len(numbers) > 10 else "")
+            self._hub.note(f"{self._session.user}: alarms {shown} acknowledged")
+        view.to_all({"type": "acknowledged", "alarms": numbers, "user": self._session.user})
 
     def _ping(self, message: Message) -> None:
         """For the page, to know how far the server is, and for the server, to know how late jogs come."""

@@ -34,11 +34,9 @@ from cnc_ptp.nodes.topics import (
     program_topic,
 )
 from cnc_ptp.protocol.blocks import ChannelOffsets, Event, HandshakeRequest, Severity, read_values
-from cnc_ptp.protocol.unit import PLC
-from cnc_ptp.web.faces.acknowledged_file import AcknowledgedFile, file_of_machine
 from cnc_ptp.web.faces.face import News
 from cnc_ptp.web.faces.machine_face import SOURCE, MachineFace, taken
-from cnc_ptp.wire.block_codec import BlockCodec, channel_offsets, head_of
+from cnc_ptp.wire.block_codec import channel_offsets
 
 NODE = "web"
 MOST_DIAGNOSTICS = 100
@@ -63,8 +61,6 @@ class WebLink(GraphLink):
         self.offsets: deque[tuple[str, ChannelOffsets]] = deque()
         self.requests: deque[HandshakeRequest] = deque()
         """Of channels, also those from before this process."""
-        self.start_ns = 0
-        """Stamp of cycle 0."""
         self._calls = CallsInFlight()
         self._jog_publishers: dict[str, Publisher[msg.Jog]] = {}
         self._jog_number = 0
@@ -86,12 +82,6 @@ class WebLink(GraphLink):
             for command in FREQUENT[kind]:
                 if command in services_of(kind):
                     self._calls.prepare(client, unit, command)
-
-    def _take_data(self, unit: str, codec: BlockCodec, data: bytes) -> None:
-        if unit == PLC and not self.start_ns:
-            stamp_ns, first_cycle, _ = head_of(data)
-            self.start_ns = stamp_ns - first_cycle * round(self.cycle_time * 1e9)
-        super()._take_data(unit, codec, data)
 
     def _take_diagnostics(self, message: DiagnosticArray) -> None:
         self.diagnostics += (diagnostics_fields(status) for status in message.status)
@@ -150,11 +140,6 @@ class WebLink(GraphLink):
         """For recordings and other clients; its stamp is that of its cycle there."""
         self._event_publisher.publish(convert.event_to_message(event, Time()))
 
-    @property
-    def acknowledged(self) -> AcknowledgedFile:
-        client = self._thread.client
-        return AcknowledgedFile(file_of_machine(client.context.get_domain_id(), client.get_namespace()), self.start_ns)
-
     def require_machine(self) -> None:
         """Raises CncError 26171 when it is gone."""
         self._require_machine()
@@ -166,7 +151,6 @@ class LiveFace(MachineFace):
     def __init__(self, machine: Machine, link: WebLink) -> None:
         super().__init__(machine)
         self._graph = link
-        self.acknowledged = link.acknowledged
         self._events, self._records = link.events, link.records
         self._first: dict[str, int] = {}
         """Unit -> first cycle of its first block here."""
