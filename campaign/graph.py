@@ -92,8 +92,17 @@ class Graph:
             each.kill()
         return names
 
-    def leftovers(self) -> list[str]:
-        """Shared memory that nobody uses and claims that the run has not taken away."""
+    def leftovers(self, patience: float = 5.0) -> list[str]:
+        """Shared memory that nobody uses and claims that the run has not taken away, some seconds after its end.
+
+        Another program that ends meanwhile takes away its own.
+        """
+        deadline = time.monotonic() + patience
+        while (left := self._left()) and time.monotonic() < deadline:
+            time.sleep(POLL)
+        return left
+
+    def _left(self) -> list[str]:
         claims = [name for name in Path("/proc/net/unix").read_text().split() if name == f"@{CLAIM}{self.domain}"]
         new = shared_memory() - self._shared
         return sorted(new - mapped() if new else new) + claims

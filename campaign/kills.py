@@ -140,14 +140,14 @@ def strike(process: psutil.Process, fault: Fault) -> None:
 def await_end(graph: Graph, fault: Fault) -> str:
     """What became of it; one that survived is interrupted.
 
-    Over are also runs that ended as they were to: one that was interrupted only when Python ended, and one whose
-    recorder, which writes to the end when it gets SIGTERM, had written everything.
+    Over are also runs that ended as they were to: one that was interrupted only at its end, and one whose recorder,
+    which writes to the end when it gets SIGTERM, had written everything.
     """
     if fault.signal == HOLD and not graph.wait(SURVIVED_AFTER):
         graph.interrupt()
         if not graph.wait(END_PATIENCE):
             return "does not end"
-        return "over" if graph.process.returncode == -signal.SIGINT and graph.summed_up else "survived"
+        return "over" if graph.process.returncode in (0, -signal.SIGINT) and graph.summed_up else "survived"
     if not graph.wait(END_PATIENCE):
         return "does not end"
     whole = fault.signal == HOLD or (fault.signal == TERM and fault.node == "recorder")

@@ -137,8 +137,9 @@ def torn(
     """
     found = tracks(recorded)
     master, slave = found[link.master], found[link.slave]
-    count = max(len(master.actual_position), len(slave.actual_position))
-    leads, follows = (held(each.actual_position, count) for each in (master, slave))
+    lengths = len(master.actual_position), len(slave.actual_position)
+    count = max(lengths) if recorded.complete else min(lengths)  # of a cut recording: as far as it has both
+    leads, follows = (held(each.actual_position[:count], count) for each in (master, slave))
     apart = follows - follows[0] - link.factor * (leads - leads[0])
     factor = abs(link.factor)
     fastest = max(np.abs(slave.actual_velocity).max(), factor * np.abs(master.actual_velocity).max())

@@ -45,7 +45,7 @@ def rows(velocities, first=0):
 
 
 def recorded(x, y=None, stops=()):
-    made = Recorded(Path("made"))
+    made = Recorded(Path("made"), complete=True)
     made.states = {"/x/state": x, "/y/state": rows(ramp()) if y is None else y}
     made.drive_stops = list(stops)
     return made
@@ -113,6 +113,20 @@ def test_a_pair_that_comes_apart_is_measured():
     distance, permitted = motion.torn(recorded(short, apart, [stop]), Link("x", "y", 1.0), MACHINE)
     assert distance == pytest.approx(apart["actual_position"][-1] - short["actual_position"][-1])
     assert distance > permitted == pytest.approx(2.1)
+
+
+def test_of_a_cut_recording_a_pair_is_judged_as_far_as_both_are_recorded():
+    """Seed 44, number 185: the killed recorder had written 303 cycles more of one axis than of the other."""
+    made = recorded(rows(ramp())[:100], rows(ramp()))
+    apart, permitted = motion.torn(made, Link("x", "y", 1.0), MACHINE)
+    assert apart > permitted
+    made.complete = False
+    apart, _ = motion.torn(made, Link("x", "y", 1.0), MACHINE)
+    assert apart == 0.0
+    for name in ("set_position", "actual_position"):
+        made.states["/y/state"][name][90:] += 5.0
+    apart, permitted = motion.torn(made, Link("x", "y", 1.0), MACHINE)
+    assert apart == pytest.approx(5.0) and apart > permitted
 
 
 def test_a_drive_that_brakes_on_its_own_does_not_catch_up():
@@ -227,6 +241,17 @@ def test_what_a_run_has_told_of_itself(tmp_path):
     assert not graph.summed_up and graph.lateness == 0.0
 
 
+def test_shared_memory_that_another_program_takes_away_is_not_left_behind(monkeypatch):
+    """Seed 44, numbers 140 and 141: semaphores of process pools of tests that were about to end."""
+    graph = Graph.__new__(Graph)
+    graph._shared, graph.domain = {"/dev/shm/before"}, 199
+    there = [{"/dev/shm/before", "/dev/shm/sem.mp-pool"}, {"/dev/shm/before"}]
+    monkeypatch.setattr("campaign.graph.shared_memory", lambda: there.pop(0) if len(there) > 1 else there[0])
+    assert graph.leftovers() == []
+    there[:] = [{"/dev/shm/fastdds_1"}]
+    assert graph.leftovers(0.1) == ["/dev/shm/fastdds_1"]
+
+
 def test_a_file_that_is_only_asked_for_is_no_start(tmp_path):
     """Seed 38, number 216: the recorder was killed before the first cycle."""
     file = tmp_path / "run.mcap"
@@ -312,6 +337,7 @@ class Ended:
         (HOLD, "x", Ended(1), "stopped"),
         (HOLD, "x", Ended(130, waits=1), "survived"),
         (HOLD, "x", Ended(-2, waits=1), "over"),
+        (HOLD, "x", Ended(0, waits=1), "over"),
         (HOLD, "x", Ended(-2, waits=1, summed_up=False), "survived"),
         (HOLD, "x", Ended(0, waits=2), "does not end"),
         (KILL, "x", Ended(0, waits=1), "does not end"),
