@@ -34,9 +34,11 @@ def _entry(*command: str) -> Callable[[], object]:
 
 
 def is_our_mistake(error: ImportError) -> bool:
-    """It lies in cnc_ptp itself: neither a package of others nor the ROS interfaces are missing."""
-    interfaces = Path(__file__).with_name("msg") / "__init__.py"
-    return (error.name or "").partition(".")[0] == "cnc_ptp" and interfaces.is_file()
+    """Neither a package of others nor the ROS interfaces are missing, and no library of theirs is unusable."""
+    if (error.name or "").partition(".")[0] == "cnc_ptp":
+        interfaces = Path(__file__).with_name("msg") / "__init__.py"
+        return interfaces.is_file()
+    return not isinstance(error, ModuleNotFoundError) and not (error.path or "").endswith(".so")
 
 
 main = _entry()

@@ -6,12 +6,13 @@ library, and the kernel runs interpreted.
 
 from __future__ import annotations
 
+import fcntl
 import io
 import os
 import shutil
 import sys
-from collections.abc import Callable
-from contextlib import AbstractContextManager, nullcontext, redirect_stdout
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext, redirect_stdout
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -37,6 +38,23 @@ OPTIMISATION = "1"
 
 def build(folder: Path) -> str:
     """Makes the library in `folder`. Returns why it could not be made, empty when it was."""
+    with alone(folder):
+        return build_alone(folder)
+
+
+@contextmanager
+def alone(folder: Path) -> Iterator[None]:
+    """Another build of the same library ends first."""
+    folder.mkdir(parents=True, exist_ok=True)
+    held = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(held, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(held)
+
+
+def build_alone(folder: Path) -> str:
     files = sources()
     state = hashes(files | recipe())
     if read_state(folder) == state and library_file(folder).is_file():
@@ -60,7 +78,6 @@ def make_library(files: list[Path], work: Path, folder: Path) -> None:
     """`work` keeps C sources and objects for the next time."""
     os.chdir(PACKAGE.parent)  # tracebacks name files as they are given here
     library = compile_library(translate(files, work), work)
-    folder.mkdir(parents=True, exist_ok=True)
     beside = folder / f"{os.getpid()}.new"
     shutil.copy2(library, beside)
     os.replace(beside, library_file(folder))  # a node that runs keeps the library that it has

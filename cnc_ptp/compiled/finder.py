@@ -65,7 +65,8 @@ class Kernel:
         if not built:
             self.interpreted_because = failure or "it was not compiled"
         elif change := changed(built, hashes(present | recipe())):
-            self.interpreted_because = f"{change} since {'its compilation failed' if failure else 'it was compiled'}"
+            since = "its last compilation began" if failure else "it was compiled"
+            self.interpreted_because = f"{change} since {since}"
         elif failure:
             self.interpreted_because = failure
         else:

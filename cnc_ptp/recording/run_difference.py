@@ -92,13 +92,13 @@ def notes_of_both(
     yield from (f"{name}: {file.missing}" for name, file in zip(names, pair, strict=True) if file.missing)
     ends = [file.recorded_span()[1] for file in pair]
     if end is None and abs(ends[0] - ends[1]) > cycle_time * 0.5:
-        texts = (f"{name} ends at {last:g} s" for name, last in zip(names, ends, strict=True))
+        texts = (f"{name} ends at {last:.10g} s" for name, last in zip(names, ends, strict=True))
         yield f"{', '.join(texts)}: what only one has was not compared"
 
 
 def span_text(file: OpenRecording) -> str:
     first, last = file.recorded_span()
-    return "holds no states" if isnan(first) else f"covers {first:g} s to {last:g} s"
+    return "holds no states" if isnan(first) else f"covers {first:.10g} s to {last:.10g} s"
 
 
 def asked_part(begin: float | None, end: float | None) -> str:

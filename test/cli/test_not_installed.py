@@ -43,4 +43,7 @@ def test_missing_interfaces_are_no_mistake_of_ours(tmp_path: Path, monkeypatch: 
 
 def test_a_mistake_of_ours_keeps_its_traceback() -> None:
     assert entry.is_our_mistake(ImportError("cannot import name 'x' from 'cnc_ptp.cli'", name="cnc_ptp.cli"))
+    assert entry.is_our_mistake(ImportError("cannot import name 'x' from 'numpy'", name="numpy", path="numpy/a.py"))
+    assert entry.is_our_mistake(ImportError("no name at all"))
     assert not entry.is_our_mistake(ModuleNotFoundError("No module named 'rich.box'", name="rich.box"))
+    assert not entry.is_our_mistake(ImportError("librcl.so: cannot open", name="_rclpy", path="/lib/_rclpy.so"))

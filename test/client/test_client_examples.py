@@ -26,7 +26,7 @@ NUMBER = r"-?\d+\.?\d*"
 def run(name: str, *arguments: str) -> str:
     """What an example prints."""
     command = [sys.executable, f"examples/{name}", *arguments]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=300, check=False)
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=240, check=False)
     assert done.returncode == 0, done.stderr
     return done.stdout
 

@@ -4,6 +4,9 @@ import os
 import shutil
 import subprocess
 import sys
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
@@ -163,7 +166,7 @@ def test_a_failure_counts_until_a_source_changes(tmp_path: Path, monkeypatch: py
     assert told == [
         ("it was not compiled", "make setup compiles it again"),
         ("it failed", "make setup compiles it again"),
-        ("cnc_ptp/axis/axis_unit.py has changed since its compilation failed", "make setup compiles it again"),
+        ("cnc_ptp/axis/axis_unit.py has changed since its last compilation began", "make setup compiles it again"),
     ]
 
 
@@ -194,6 +197,28 @@ def test_a_library_of_these_sources_is_not_built_again(tmp_path: Path, monkeypat
     assert len(calls) == 1 and read_state(tmp_path) == hashes(sources() | recipe())
     library_file(tmp_path).unlink()
     assert build(tmp_path) == "" and len(calls) == 2
+
+
+def test_a_second_build_waits_for_the_first_one_and_finds_its_library(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    calls, begun, go_on = [], threading.Event(), threading.Event()
+
+    def make(*_: object) -> None:
+        calls.append(1)
+        begun.set()
+        assert go_on.wait(30.0)
+        library_file(tmp_path).touch()
+
+    monkeypatch.setattr(build_module, "make_library", make)
+    with ThreadPoolExecutor() as pool:
+        first = pool.submit(build, tmp_path)
+        assert begun.wait(30.0)
+        second = pool.submit(build, tmp_path)
+        time.sleep(0.2)
+        assert not second.done()
+        go_on.set()
+        assert (first.result(), second.result(), len(calls)) == ("", "", 1)
 
 
 @compiled_only

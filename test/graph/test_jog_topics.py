@@ -102,3 +102,11 @@ def test_clients_with_ever_new_names_take_no_more_room(jogs):
         jogs.heard("x", 9.0, 2000.1, client=f"made up {n}")
     assert len(jogs.warnings) == len(jogs.topics._sequence) == KNOWN_CLIENTS
     assert jogs.heard("x", 0.0, 2000.1) == 0.0, "the client that jogs is known"
+
+
+def test_made_up_names_on_an_axis_silence_no_warning_of_another_one(jogs):
+    for axis, names in (("x", KNOWN_CLIENTS + 100), ("y", 1)):
+        jogs.heard(axis, 5.0, 1.0)
+        for n in range(names):
+            jogs.heard(axis, 9.0, 1.1, client=f"made up {n}")
+    assert len(jogs.warnings) == KNOWN_CLIENTS + 1 and "/y/jog" in jogs.warnings[-1][1]

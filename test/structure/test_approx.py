@@ -33,5 +33,10 @@ def test_other_lengths_and_shapes_differ():
     assert np.ones(20) != pytest.approx(1.1) and pytest.approx(0.0, abs=1e9) != RAMP
 
 
+def test_what_pytest_compares_exactly_is_no_number():
+    assert pytest.approx([1.0] * 9 + [True]) != [1.0] * 10
+    assert np.ones(10) != pytest.approx(np.array(1.0))
+
+
 def test_what_is_near_is_decided_at_once():
     assert within(pytest.approx(RAMP), RAMP) and not within(pytest.approx(RAMP), OFF)

@@ -21,6 +21,9 @@ def long_sets(sets: Iterable[Sequence[Any]]) -> list[Any]:
 
 def long_but(values: Iterable[Any], short: Collection[Any]) -> list[Any]:
     """Parameters of a test in their order, each with the mark but those that are in `short`."""
+    values = [*values]
+    if missing := [each for each in short if each not in values]:
+        raise ValueError(f"{missing} are no parameters: nothing of the test would be short")
     return [value if value in short else long([value])[0] for value in values]
 
 

@@ -30,5 +30,5 @@ def span_of(recording: str) -> str:
     """From when to when it reaches; empty where its times cannot be read."""
     with suppress(CncError), cnc_ptp.recording.open(recording) as saved:
         first, last = saved.recorded_span()
-        return "" if isnan(first) else f", {first:g} s to {last:g} s"
+        return "" if isnan(first) else f", {first:.10g} s to {last:.10g} s"
     return ""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Callable
 
 from cnc_ptp import msg
@@ -30,7 +31,8 @@ class JogTopics:
     def __init__(self, warn: Callable[[int, str], None]) -> None:
         """`warn(number, text)`: publishes what happens to the messages, once for each client."""
         self._warn = warn
-        self._reported: set[tuple[int, str, str]] = set()
+        self._reported: defaultdict[tuple[int, str], set[str]] = defaultdict(set)
+        """Number and axis -> clients."""
         self._sequence: dict[tuple[str, str], int] = {}
         self._velocity: dict[str, float] = {}
         self._silence = Silence(PATIENCE)
@@ -79,8 +81,9 @@ class JogTopics:
             del self._sequence[next(iter(self._sequence))]  # the one that was heard longest ago
 
     def _report(self, error_id: int, axis: str, client: str, text: str) -> None:
-        if (error_id, axis, client) not in self._reported and len(self._reported) < KNOWN_CLIENTS:
-            self._reported.add((error_id, axis, client))
+        told = self._reported[error_id, axis]
+        if client not in told and len(told) < KNOWN_CLIENTS:
+            told.add(client)
             self._warn(error_id, text)
 
 
