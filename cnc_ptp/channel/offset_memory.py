@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from cnc_ptp.errors import CncError, Value, did_you_mean, nearest
 from cnc_ptp.kinematics.kinematics import Kinematics
 from cnc_ptp.nc.canonical import OffsetReport
-from cnc_ptp.nc.coordinates.codes import LAST_OFFSET, offset_values
+from cnc_ptp.nc.coordinates.codes import LAST_OFFSET, default_offset, inactive_axes, offset_values
 from cnc_ptp.nc.coordinates.coordinates import NO_CHANGES, Coordinates
 from cnc_ptp.nc.coordinates.frame import IDENTITY, Frame, main_axes, matrix
 from cnc_ptp.nc.coordinates.report import offset_report
@@ -31,6 +31,7 @@ class OffsetMemory:
         self.changes = NO_CHANGES
         self.clamp_index = 0
         self._shown: OffsetReport | None = None
+        self._shown_changes = NO_CHANGES
         self._news: list[ChannelOffsets] = []
         self._frame: Frame | None = None
         self._kinematics: Kinematics | None = None
@@ -123,9 +124,9 @@ class OffsetMemory:
     def reach(self, cycle: int, line: int, report: OffsetReport) -> None:
         """The path has reached a block that changes them."""
         self._stale = True
-        if report == self._shown:
+        if report == self._shown and self.changes == self._shown_changes:
             return
-        self._shown, self._kinematics = report, report.kinematics
+        self._shown, self._shown_changes, self._kinematics = report, self.changes, report.kinematics
         linear, none = matrix([report.matrix[row : row + 3] for row in (0, 3, 6)]), not any(report.shift)
         same = none and linear == IDENTITY
         plane = None if report.kinematics is None else report.kinematics.plane
@@ -152,12 +153,15 @@ class OffsetMemory:
         return programmed
 
     def _message(self, cycle: int, line: int, report: OffsetReport) -> ChannelOffsets:
+        channel, changes, places = self._channel, self.changes, range(len(self._channel.axes))
+        changed = sorted(changes.values.keys() | changes.inactive.keys())
+        inactive = [inactive_axes(channel, changes, index) for index in changed]
         return ChannelOffsets(
             cycle=cycle,
             line=line,
-            axes=list(self._channel.axes),
+            axes=list(channel.axes),
             zero_index=report.zero_index,
-            zero_name=self._channel.offsets.names.get(report.zero_index, ""),
+            zero_name=channel.offsets.names.get(report.zero_index, ""),
             zero_offset=list(report.zero),
             reference_offset=list(report.added),
             preset=list(report.preset),
@@ -173,6 +177,10 @@ class OffsetMemory:
             matrix=list(report.matrix),
             shift=list(report.shift),
             origin=[] if report.kinematics is None else list(report.kinematics.origin),
+            default_index=default_offset(channel, changes),
+            changed_indices=changed,
+            changed_offsets=[value for index in changed for value in offset_values(channel, changes, index)],
+            changed_inactive=[place in axes for axes in inactive for place in places],
         )
 
 

@@ -215,6 +215,11 @@ class ChannelOffsets:
     matrix: list[float]
     shift: list[float]
     origin: list[float] = field(default_factory=list)
+    default_index: int = -1
+    """-1: a recording from before it was told."""
+    changed_indices: list[int] = field(default_factory=list)
+    changed_offsets: list[float] = field(default_factory=list)
+    changed_inactive: list[bool] = field(default_factory=list)
 
 
 class CommandAnswer(NamedTuple):

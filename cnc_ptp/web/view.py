@@ -141,14 +141,12 @@ class View:
             self.to_all({"type": "handshake", **self.handshakes.waiting[request.id]})
 
     def _tell_answered(self, record: CommandRecord, blocks: Sequence[tuple[str, CycleBlock]]) -> None:
-        """A request that was acknowledged, an offset that was changed, by whomever."""
+        """A request that was acknowledged, a program that was loaded, by whomever."""
         self._switches.take_record(record)
         self.targets.take_record(record, blocks)
         self.programs.take_record(record)
         if written_parameter(record) is not None:
             self._tell_parameters(record.target)
-        if record.target in self.tables:
-            self.tables[record.target].take_record(record, blocks)
         self._tell_done(self.handshakes.take_record(record))
 
     def _tell_parameters(self, unit: str) -> None:
@@ -170,8 +168,6 @@ class View:
             table.begin_again()
         for channel, offsets in past.offsets:
             self._take_offsets(channel, offsets)
-        for record in past.records:
-            self.tables[record.target].take_record(record, ())
         events = [event_fields(event, cycle_time) for event in past.events[-EVENTS_KEPT:]]
         known = {"events": events, "alarms": self.alarms.list(), "offsets": self.offsets}
         self.to_all({"type": "past", **known, "nodes": [*past.diagnostics]})
@@ -196,6 +192,6 @@ class View:
 
     def _take_offsets(self, channel: str, offsets: ChannelOffsets) -> None:
         """They may come late."""
-        self.tables[channel].take_active(offsets)
+        self.tables[channel].take(offsets)
         if self.offsets.get(channel, {}).get("cycle", 0) <= offsets.cycle:
             self.offsets[channel] = {"channel": channel, **asdict(offsets)}

@@ -245,7 +245,50 @@ def test_commands_show_what_the_next_manual_block_starts_with() -> None:
     assert (shown.clamp_index, shown.clamp_offset, shown.shift) == (4, [0.5, 0.0, -0.5], [0.5, 0.0, -0.5])
     assert at.give("channel", "set_zero_offset", index=1, axis="X", value=3).accepted
     at.run(0.1)
-    assert offsets(at)[-1] == shown  # it is not active
+    assert offsets(at)[-1].shift == shown.shift  # it is not active
+
+
+def test_the_tables_as_they_are_changed_are_shown() -> None:
+    """What the next program finds: by a command at once, of a program at its end; also of an offset that is not active."""
+    at = bench().run(0.1)
+    assert told(at) == (0, {})
+    assert at.give("channel", "set_zero_offset", index=2, axis="Y", value=4.5).accepted
+    at.run(0.1)
+    assert told(at) == (0, {2: ((1.0, 4.5, 3.0), ())})
+    start(at, "G160=1 X1 Z1\nV.G.NP[3].V.Z = 7\nV.G.NP_DEFAULT = 1\nG00 X200\nM30", 0.1)
+    assert told(at) == (0, {2: ((1.0, 4.5, 3.0), ())})
+    at.run(3.0)
+    changed = {1: ((10.0, 20.0, 30.0), (0, 2)), 2: ((1.0, 4.5, 3.0), ()), 3: ((0.0, 0.0, 7.0), ())}
+    assert told(at) == (1, changed)
+    assert (offsets(at)[-1].zero_index, offsets(at)[-1].zero_offset) == (1, [0.0, 20.0, 0.0])
+
+
+def test_a_changed_table_is_shown_once() -> None:
+    at = bench().run(0.1)
+    assert at.give("channel", "set_zero_offset", index=2, axis="Y", value=4.5).accepted
+    at.run(1.0)
+    assert at.give("channel", "set_zero_offset", index=2, axis="Y", value=4.5).accepted
+    at.run(1.0)
+    assert len(offsets(at)) == 2
+
+
+def test_of_a_program_that_is_reset_no_change_is_shown() -> None:
+    at = bench().run(0.1)
+    start(at, "V.G.NP[3].V.Z = 7\nG00 X200\nM30", 0.1)
+    assert at.give("channel", "reset").accepted
+    at.run(3.0)
+    assert told(at) == (0, {})
+
+
+def told(at: MachineBench) -> tuple[int, dict[int, tuple[tuple[float, ...], tuple[int, ...]]]]:
+    """Index at program start; index -> values and places of inactive axes, of what was changed."""
+    newest, count = offsets(at)[-1], len(offsets(at)[-1].axes)
+    changed = {}
+    for number, index in enumerate(newest.changed_indices):
+        row = slice(count * number, count * (number + 1))
+        inactive = tuple(place for place, off in enumerate(newest.changed_inactive[row]) if off)
+        changed[index] = (tuple(newest.changed_offsets[row]), inactive)
+    return newest.default_index, changed
 
 
 def test_a_fault_ends_with_the_offsets_of_the_start() -> None:

@@ -106,9 +106,27 @@ def offsets(cycle: int) -> ChannelOffsets:
     names, own = ["X", "Y", "Z"], ([1.5, 0.0, -3.0], [0.0, 5e-324, 0.0], [0.1, 0.2, 0.3])
     other, scale, mirrored = [7.0, 8.0, 9.0], [1.0, 2.0, 1.0], [False, True, False]
     matrix = [float(place) for place in range(9)]
-    return ChannelOffsets(
-        cycle, 7, names, 1, "Öl", *own, 4, other, other, scale, mirrored, True, 30.0, ["#ACS"], False, matrix, other
+    values = (
+        cycle,
+        7,
+        names,
+        1,
+        "Öl",
+        *own,
+        4,
+        other,
+        other,
+        scale,
+        mirrored,
+        True,
+        30.0,
+        ["#ACS"],
+        False,
+        matrix,
+        other,
     )
+    tables = {"changed_indices": [1, 96], "changed_offsets": other + own[0], "changed_inactive": 2 * mirrored}
+    return ChannelOffsets(*values, default_index=96, **tables)
 
 
 def record(path: Path, blocks: list[tuple[str, CycleBlock]], **options: float) -> None:

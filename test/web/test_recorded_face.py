@@ -1,6 +1,8 @@
 """Pages of a recording."""
 
 import asyncio
+import os
+import threading
 from pathlib import Path
 
 import numpy as np
@@ -189,6 +191,22 @@ def test_what_no_unit_sends_is_left_out(tmp_path):
     file.close()
 
 
+@pytest.mark.parametrize("fails", ["load_machine", "DecoderFactory"])
+def test_a_recording_that_cannot_be_shown_is_not_kept_open(recording, monkeypatch, fails):
+    """The server tries it again each second, and keeps the error, which keeps everything alive that it has met."""
+
+    def fail(*_arguments):
+        raise CncError(21001, "a fault in it", "nothing is shown")
+
+    monkeypatch.setattr(recorded_file, fails, fail)
+    before = sorted(os.listdir("/proc/self/fd"))
+    with pytest.raises(CncError, match="a fault in it") as error:
+        RecordedFile(recording)
+    assert sorted(os.listdir("/proc/self/fd")) == before
+    assert not [each for each in threading.enumerate() if each.name.startswith("columns")]
+    assert error.value.number == 21001
+
+
 def test_an_answer_has_a_limit(recording, monkeypatch):
     monkeypatch.setattr(recorded_file, "MOST_SAMPLES", 1000)
     file = RecordedFile(recording)
@@ -288,7 +306,7 @@ def test_a_page_has_the_offsets_of_its_time(tmp_path):
         m.channel.set_zero_offset(2, "X", 12.5)
         m.run_for(0.2)
         m.channel.set_zero_offset(3, "Y", 4.0)  # never active
-        m.channel.teach_zero_offset(4)
+        m.channel.teach_zero_offset(4, value=-2.0)
         m.channel.load("part.nc", text="G55\nG1 X10 F600\nG54\nX10\nM30\n")  # 2.25 s, then 1.25 s
         m.channel.start().wait()
 
@@ -304,7 +322,7 @@ def test_a_page_has_the_offsets_of_its_time(tmp_path):
                 assert active["zero_offset"][0] == (12.5 if index == 2 else 0.0)
                 rows = {row["name"]: row["values"] for row in (await page.ask("offsets"))["offsets"]}
                 assert rows["G55"]["X"] == 12.5 and rows["G56"]["Y"] == 4.0
-                assert rows["G57"] == {"X": None, "Y": None, "Z": None}
+                assert rows["G57"] == {"X": 2.0, "Y": 2.0, "Z": 2.0}
             await page.ask("seek", time=0.0)
             assert (await page.wait_for("past"))["offsets"].get("channel", {}).get("zero_index") != 2
             assert (await page.ask("offsets"))["offsets"] == before

@@ -8,8 +8,8 @@ import pytest
 from web_support import MILL, ROOT, site
 
 from cnc_ptp.parameters import machine_text, read_machine
-from cnc_ptp.protocol.blocks import AxisBlock, ChannelOffsets, CommandRecord
-from cnc_ptp.web.faces.offset_table import OffsetTable, below_zero_offset
+from cnc_ptp.protocol.blocks import ChannelOffsets, CommandRecord
+from cnc_ptp.web.faces.offset_table import OffsetTable
 from cnc_ptp.web.programs.backplot import HEAD
 
 
@@ -19,22 +19,63 @@ def mill_table():
     return OffsetTable(sets["channel"], sets)
 
 
-def active(cycle, index=0, x=0.0, *, clamp=0.0, tool=0.0):
-    """What a mill tells: the values of its X axis."""
-    none, no_lists = [0.0] * 3, ([0.0] * 3, [0.0] * 3)
-    values = [x, 0.0, 0.0], *no_lists, 0, [clamp, 0.0, 0.0], [tool, 0.0, 0.0]
-    plain = [1.0] * 3, [False] * 3, False, 0.0, [], False, [1.0, 0, 0, 0, 1.0, 0, 0, 0, 1.0], none
-    return ChannelOffsets(cycle, 0, ["X", "Y", "Z"], index, "", *values, *plain)
+def told(cycle, **changed):
+    """What a mill tells when G55 is active with an X that a program has set for itself alone."""
+    none, matrix = [0.0] * 3, [1.0, 0, 0, 0, 1.0, 0, 0, 0, 1.0]
+    values = [99.0, 0.0, 0.0], none, none, 0, none, none
+    plain = [1.0] * 3, [False] * 3, False, 0.0, [], False, matrix, none
+    return ChannelOffsets(cycle, 0, ["X", "Y", "Z"], 2, "", *values, *plain, default_index=0, **changed)
 
 
-@pytest.mark.parametrize("lacking", ["clamp_offset", "tool_offset"])
-def test_offsets_that_no_channel_sends_are_not_known(lacking):
-    assert below_zero_offset(active(0, clamp=2.0, tool=0.5), "X") == 2.5
-    assert below_zero_offset(replace(active(0), **{lacking: []}), "X") is None
+def test_a_table_is_what_its_channel_has_told_last():
+    """In whatever order it comes; the values of the active offset are not those of the table."""
+    older = told(50, changed_indices=[2], changed_offsets=[1.0, 2.0, 3.0], changed_inactive=[False] * 3)
+    newer = replace(told(150), changed_indices=[2, 7], changed_offsets=[5.0, 6.0, 7.0, 0.0, 0.0, 0.5])
+    newer = replace(newer, changed_inactive=[False, True, False] + [False] * 3, clamp_index=1, default_index=7)
+    for order in ((told(0), older, newer), (newer, told(0), older), (older, newer)):
+        table = mill_table()
+        for offsets in order:
+            table.take(offsets)
+        shown = table.shown()
+        assert (shown["default"], table.clamp_index) == (7, 1)
+        assert {row["index"]: row for row in shown["offsets"] if row["index"] in (2, 7)} == {
+            2: {"index": 2, "name": "G55", "values": {"X": 5.0, "Y": 6.0, "Z": 7.0}, "inactive": ["Y"]},
+            7: {"index": 7, "name": "G159=7", "values": {"X": 0.0, "Y": 0.0, "Z": 0.5}, "inactive": []},
+        }
+    table.begin_again()
+    assert table.shown() == mill_table().shown()
 
 
-def changed(cycle, command, **arguments):
-    return CommandRecord(cycle, "channel", command, arguments, True, 0, "")
+def test_news_are_told_once():
+    table = mill_table()
+    assert table.news() is None
+    table.take(told(50, changed_indices=[2], changed_offsets=[1.0, 2.0, 3.0], changed_inactive=[False] * 3))
+    assert table.news() == table.shown() and table.news() is None
+    table.take(told(60, changed_indices=[2], changed_offsets=[1.0, 2.0, 3.0], changed_inactive=[False] * 3))
+    assert table.news() is None
+
+
+@pytest.mark.parametrize(
+    "foreign",
+    [
+        {"changed_offsets": [1.0, 2.0]},
+        {"changed_inactive": []},
+        {"changed_indices": [1, 2]},
+        {"axes": ["X", "Y"]},
+        {"axes": ["X", "Z", "Y"]},
+    ],
+)
+def test_what_no_channel_with_these_axes_sends_changes_nothing(foreign):
+    table = mill_table()
+    whole = {"changed_indices": [2], "changed_offsets": [1.0, 2.0, 3.0], "changed_inactive": [False] * 3}
+    table.take(replace(told(50, **whole), **foreign))
+    assert table.news() is None
+
+
+def test_a_recording_from_before_tables_were_told_has_those_of_its_parameters():
+    table = mill_table()
+    table.take(replace(told(50), default_index=-1))
+    assert table.shown() == mill_table().shown()
 
 
 def test_zero_offsets_and_their_changes():
@@ -76,28 +117,31 @@ def test_a_backplot_has_the_zero_offsets_of_now():
     asyncio.run(story())
 
 
+def test_a_backplot_has_what_programs_have_changed_of_the_tables():
+    """The zero offset at program start, and that one does not count for an axis."""
+
+    async def story():
+        async with site() as here:
+            page = await here.page()
+            for axis, value in (("X", 12.5), ("Y", 4.0), ("Z", -3.0)):
+                assert (await page.command("channel", "set_zero_offset", index=2, axis=axis, value=value))["ok"]
+                await page.wait_for("zero_offsets")
+            assert (await page.command("channel", "mdi", text="G160=2 Y1\nV.G.NP_DEFAULT = 2"))["ok"]
+            told = await page.wait_for("zero_offsets", lambda told: told["default"] == 2)
+            assert [row["inactive"] for row in told["offsets"] if row["index"] == 2] == [["Y"]]
+            assert rows_of(told)[2] == {"X": 12.5, "Y": 4.0, "Z": -3.0}
+            assert (await page.ask("load", name="part.nc", text="G01 X10 Y0 Z0 F1000\nM30\n"))["ok"]
+            await page.wait_for("program")
+            assert (await ends(here))[-1] == (22.5, 0.0, -3.0)
+
+    asyncio.run(story())
+
+
 async def ends(here):
     """Of the lines of a backplot."""
     drawn = await (await here.client.get("/api/backplot")).read()
     rows = np.frombuffer(drawn, "<f4", offset=HEAD.size).reshape(-1, 5)
     return [tuple(map(float, row[:3])) for row in rows[1:]]
-
-
-def test_a_taught_offset_is_what_a_program_finds():
-    """The page computes it; the channel tells it when it becomes active."""
-
-    async def story():
-        async with site() as here:
-            page = await here.page()
-            assert (await page.command("x", "move_absolute", target=1.23456789))["ok"]
-            await page.state_of("x", lambda x: x["state"] == "Standstill" and x["set_position"] > 1)
-            assert (await page.command("channel", "teach_zero_offset", index=2, value=0.5))["ok"]
-            taught = rows_of(await page.wait_for("zero_offsets"))[2]
-            assert (await page.command("channel", "mdi", text="G55"))["ok"]
-            active = await page.wait_for("offsets", lambda offsets: offsets["zero_index"] == 2)
-            assert [*taught.values()] == pytest.approx(active["zero_offset"], abs=1e-6)
-
-    asyncio.run(story())
 
 
 def test_a_c_axis_is_taught_and_the_pages_continue():
@@ -141,37 +185,6 @@ def test_accepted_records_of_others_with_wrong_arguments_change_nothing(argument
     asyncio.run(story())
 
 
-def test_an_offset_that_was_taught_before_the_server_began_is_not_known_until_it_is_active():
-    """The record comes again to who begins later; the axes have gone on since."""
-
-    async def story():
-        async with site() as here:
-            page = await here.page()
-            assert (await page.ask("load", name="part.nc", text="G55 G01 X10 Y0 Z0 F1000\nX20\nM30\n"))["ok"]
-            await page.wait_for("program")
-            await page.wait_for("state", lambda state: state["time"] > 1.0)
-            taught = CommandRecord(5, "channel", "teach_zero_offset", '{"index": 2}', True, 0, "")
-            here.hub.face._link.seen.take_record(taught)
-            assert rows_of(await page.wait_for("zero_offsets"))[2] == {"X": None, "Y": None, "Z": None}
-            assert (await ends(here)) == [(10.0, 0.0, 0.0), (20.0, 0.0, 0.0)]
-            assert (await page.command("channel", "mdi", text="G55"))["ok"]
-            assert None not in rows_of(await page.wait_for("zero_offsets"))[2].values()
-
-    asyncio.run(story())
-
-
-def test_an_offset_is_taught_where_its_axis_was_in_the_cycle_of_the_command():
-    """Not where it is when the record comes."""
-    machine = read_machine(str(ROOT / "config" / "mill.yaml"))
-    sets = {unit: own for unit, own in machine.sets.items() if unit != "machine"}
-    table = OffsetTable(sets["channel"], sets)
-    table.take_active(active(90, clamp=1.0, tool=0.25))
-    blocks = [("x", AxisBlock(100 + n, 10, set_position=[n + 0.5] * 10, set_velocity=[0.0] * 10)) for n in (0, 10, 20)]
-    taught = CommandRecord(113, "channel", "teach_zero_offset", '{"index": 2, "axis": "x", "value": 2}', True, 0, "")
-    table.take_record(taught, blocks)
-    assert table.rows[2] == {"X": 7.25, "Y": 0.0, "Z": 0.0}
-
-
 def test_offsets_of_a_facing_axis_are_diameters_where_the_machine_wants_that(tmp_path):
     """P-CHAN-00091: commands and the table have diameters; the axis goes by radii, and topics show them."""
     lathe = tmp_path / "lathe.yaml"
@@ -200,40 +213,10 @@ def test_offsets_of_a_facing_axis_are_diameters_where_the_machine_wants_that(tmp
     asyncio.run(story())
 
 
-def test_what_lies_below_a_taught_offset_must_be_known():
-    """Without it the page does not know the value; as under #MCS and #FACE, where axes are not what programs name."""
-    standing = [("x", AxisBlock(100, 10, set_position=[8.0] * 10, set_velocity=[0.0] * 10))]
-    teach = changed(105, "teach_zero_offset", index=2, axis="X")
-    known = active(90, clamp=1.0)
-    for offsets, taught in (
-        (None, None),
-        (replace(known, machine_coordinates=True), None),
-        (replace(known, origin=[0.0, 0.0, 0.0]), None),
-        (known, 7.0),
-    ):
-        table = mill_table()
-        if offsets is not None:
-            table.take_active(offsets)
-        table.take_record(teach, standing)
-        assert table.rows[2]["X"] == taught
-
-
-def test_of_commands_and_active_offsets_that_come_in_any_order_the_newest_counts():
-    changes = [
-        lambda table: table.take_active(active(0)),
-        lambda table: table.take_active(active(50, 2, 3.0)),
-        lambda table: table.take_record(changed(100, "set_zero_offset", index=2, axis="X", value=5), ()),
-        lambda table: table.take_active(replace(active(150), clamp_index=1)),
-    ]
-    for order in ((0, 1, 2, 3), (2, 3, 0, 1), (3, 2, 1, 0), (2, 0, 1, 3)):
-        table = mill_table()
-        for place in order:
-            changes[place](table)
-        assert (table.rows[2]["X"], table.clamp_index) == (5.0, 1), order
-
-
 def test_a_new_value_is_shown_while_the_former_one_is_active():
-    """It counts when the offset is selected next; until then other offsets change beside the old value."""
+    """It counts when the offset is selected next; until then other offsets change beside the old value. So does what a
+    program sets for itself alone (V.G.NP_AKT).
+    """
 
     async def story():
         async with site() as here:
@@ -247,6 +230,8 @@ def test_a_new_value_is_shown_while_the_former_one_is_active():
             assert rows_of(await page.ask("offsets"))[2]["X"] == 5.0
             assert (await page.command("channel", "mdi", text="G55"))["ok"]
             await page.wait_for("offsets", lambda offsets: offsets["zero_offset"][0] == 5.0)
+            assert (await page.command("channel", "mdi", text="V.G.NP_AKT.V.X = 3"))["ok"]
+            await page.wait_for("offsets", lambda offsets: offsets["zero_offset"][0] == 3.0)
             assert rows_of(await page.ask("offsets"))[2]["X"] == 5.0
 
     asyncio.run(story())

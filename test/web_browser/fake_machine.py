@@ -365,7 +365,8 @@ class Fake:
             fields = {"file": f"/machines/{message['file']}"}
         elif kind == "offsets":
             values = {"X": 12.5, "Y": 0.0, "Z": -3.0}
-            fields = {"axes": ["X", "Y", "Z"], "offsets": [{"index": 1, "name": "G54", "values": values}]}
+            row = {"index": 1, "name": "G54", "values": values, "inactive": []}
+            fields = {"axes": ["X", "Y", "Z"], "default": 1, "offsets": [row]}
         elif kind == "acknowledge":
             await self.tell(
                 {

@@ -441,13 +441,13 @@ def test_offsets_are_shown_set_and_taught(look, server, fake):
     cell = page.locator("[aria-label='G54 X']")
     eventually(page, lambda: cell.input_value() == "12.5")
     assert page.locator("[aria-label='G54 Z']").input_value() == "-3"
-    rows = [{"index": 1, "name": "G54", "values": {"X": 7.5, "Y": 0.0, "Z": -3.0}}]
-    server.do(fake.tell({"type": "zero_offsets", "channel": "channel", "axes": ["X", "Y", "Z"], "offsets": rows}))
+    page.wait_for_selector("text='Programs start with G54.'")
+    tell_offset(server, fake, index=1, name="G54", values={"X": 7.5, "Y": 0.0, "Z": -3.0}, inactive=[])
     eventually(page, lambda: cell.input_value() == "7.5")
-    rows = [{"index": 2, "name": "G55", "values": {"X": None, "Y": 1.0, "Z": 0.0}}]
-    server.do(fake.tell({"type": "zero_offsets", "channel": "channel", "axes": ["X", "Y", "Z"], "offsets": rows}))
-    page.wait_for_selector("[aria-label='G55 X'][placeholder='taught']")
-    assert [page.input_value(f"[aria-label='G55 {axis}']") for axis in "XYZ"] == ["", "1", "0"]
+    tell_offset(server, fake, index=2, name="G55", values={"X": 2.0, "Y": 1.0, "Z": 0.0}, inactive=["X"])
+    page.wait_for_selector("[aria-label='G55 X'][title='does not count for this axis (G160)']")
+    assert [page.input_value(f"[aria-label='G55 {axis}']") for axis in "XYZ"] == ["2", "1", "0"]
+    assert page.get_attribute("[aria-label='G55 Y']", "title") == ""
     cell.fill("-4")
     cell.press("Enter")
     eventually(page, lambda: commands(fake)[-1] == ("set_zero_offset", {"index": 1, "axis": "X", "value": -4}))
@@ -469,12 +469,16 @@ def test_an_offset_that_is_refused_is_shown_as_it_is(look, server, fake):
         eventually(page, lambda: cell.input_value() == "12.5")
     page.wait_for_selector(".notice.error >> text=a program runs")
     cell.fill("-5")
-    rows = [{"index": 1, "name": "G54", "values": {"X": 7.5, "Y": 0.0, "Z": -3.0}}]
-    server.do(fake.tell({"type": "zero_offsets", "channel": "channel", "axes": ["X", "Y", "Z"], "offsets": rows}))
+    tell_offset(server, fake, index=1, name="G54", values={"X": 7.5, "Y": 0.0, "Z": -3.0}, inactive=[])
     page.wait_for_timeout(200)
     assert cell.input_value() == "-5"  # what is being entered stays
     cell.press("Enter")
     eventually(page, lambda: cell.input_value() == "7.5")
+
+
+def tell_offset(server, fake, **row):
+    table = {"channel": "channel", "axes": ["X", "Y", "Z"], "default": 1, "offsets": [row]}
+    server.do(fake.tell({"type": "zero_offsets", **table}))
 
 
 def test_the_picker_takes_the_endings_of_the_server(look):

@@ -40,8 +40,6 @@ class Past:
     events: Sequence[Event]
     offsets: Sequence[tuple[str, ChannelOffsets]]
     """Of channels, in the order of their cycles."""
-    records: Sequence[CommandRecord]
-    """Of commands that have changed zero offsets."""
     diagnostics: Sequence[dict[str, Any]]
     """The last ones of each node."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from bisect import bisect_left, bisect_right
+from bisect import bisect_right
 from collections.abc import Iterator, Mapping
 from math import inf
 from operator import attrgetter
@@ -11,7 +11,7 @@ from typing import Any
 
 from cnc_ptp.client.link import Reply
 from cnc_ptp.errors import CncError
-from cnc_ptp.protocol.blocks import CommandRecord, CycleBlock
+from cnc_ptp.protocol.blocks import CycleBlock
 from cnc_ptp.web.faces.description import describe_commands
 from cnc_ptp.web.faces.face import Face, News, Past, State
 from cnc_ptp.web.faces.program_watch import Load
@@ -167,8 +167,7 @@ class RecordedFace(Face):
         offsets = bisect_right(self.file.offsets, until, key=lambda each: each[1].cycle)
         lately = (int(self._time / WINDOW) - 1) * WINDOW  # each node tells once a second
         last = {report.fields["name"]: report.fields for report in self._reports(lately, self._time)}
-        events, records = self.file.events[: self._events_by(self._time)], self._records(0, until)
-        return Past(events, self.file.offsets[:offsets], records, [*last.values()])
+        return Past(self.file.events[: self._events_by(self._time)], self.file.offsets[:offsets], [*last.values()])
 
     def news(self) -> News:
         begin, end = self._told, self._time
@@ -177,13 +176,7 @@ class RecordedFace(Face):
             return News()
         events = self.file.events[self._events_by(begin) : self._events_by(end)]
         diagnostics = [report.fields for report in self._reports(begin, end)]
-        records = self._records(begin / self.cycle_time, end / self.cycle_time)
-        return News(events, blocks=[*self._blocks(begin, end)], records=records, diagnostics=diagnostics)
-
-    def _records(self, begin: float, end: float) -> list[CommandRecord]:
-        """Of commands that have changed zero offsets, from a cycle up to another one."""
-        records = self.file.offset_records
-        return records[bisect_left(records, begin, key=CYCLE) : bisect_left(records, end, key=CYCLE)]
+        return News(events, blocks=[*self._blocks(begin, end)], diagnostics=diagnostics)
 
     def _events_by(self, time: float) -> int:
         """How many events have come by a time; at the end all, though its last digits be lost."""

@@ -26,7 +26,6 @@ from cnc_ptp.recording.mcap_index import NOT_CLOSED
 from cnc_ptp.recording.opened import OpenRecording
 from cnc_ptp.recording.parts import files_of
 from cnc_ptp.web.faces.description import describe_units
-from cnc_ptp.web.faces.offset_table import OFFSET_COMMANDS
 from cnc_ptp.web.faces.program_watch import load_of
 from cnc_ptp.web.faces.scope import HEAD, Samples, Signal
 from cnc_ptp.wire.block_codec import codec_of
@@ -64,8 +63,15 @@ class RecordedFile:
     def __init__(self, path: str) -> None:
         """Raises CncError 26001 to 26003, 26005, 26011."""
         self._recording = OpenRecording(path)
+        self._files: list[BinaryIO] = []
+        try:
+            self._read(path)
+        except BaseException:
+            self.close()
+            raise
+
+    def _read(self, path: str) -> None:
         if not self._recording.is_closed:
-            self._recording.close()
             raise CncError(
                 CORRUPT,
                 f"recording {path}: {NOT_CLOSED}",
@@ -75,20 +81,17 @@ class RecordedFile:
         self.kinds = unit_kinds(self.parameters)
         self.sets = {unit: self.parameters.sets[unit] for unit, kind in self.kinds.items() if kind != "plc"}
         self.cycle_time = self.parameters.cycle_time_us * 1e-6
-        self._files: list[BinaryIO] = [Path(file).open("rb") for file in files_of(Path(path))]  # noqa: SIM115  # until close
+        self._files = [Path(file).open("rb") for file in files_of(Path(path))]  # noqa: SIM115  # until close
         self.units = describe_units(self.kinds, self.sets, self.cycle_time)
         self.end = self._end()
         self.events = self._read_events()
         self.offsets = self._read_offsets()
-        records = self._read_records()
         self.programs = [
             (record.cycle, record.target, load_of(record_arguments(record)))
-            for record in records
+            for record in self._read_records()
             if record.command == "load" and is_load(record_arguments(record))
         ]
         """Cycle, channel, and each program that was loaded."""
-        self.offset_records = [record for record in records if record.command in OFFSET_COMMANDS]
-        """Of commands that have changed zero offsets."""
         self._reading = asyncio.Lock()
         self._decoders = [DecoderFactory() for _ in self._files]
         self._windows: OrderedDict[int, Window] = OrderedDict()
@@ -178,7 +181,7 @@ class RecordedFile:
             names = [each.name for each in fields(ChannelOffsets) if each.name in topic.fields]
             columns = self._recording.columns(topic.name, *names)
             rows = zip(*(columns[name].tolist() for name in names), strict=True)
-            found += [(channel, ChannelOffsets(**dict(zip(names, row, strict=True)))) for row in rows]
+            found += [(channel, ChannelOffsets(**dict(zip(names, map(plain, row), strict=True)))) for row in rows]
         return sorted(found, key=lambda offsets: offsets[1].cycle)
 
     def _read_records(self) -> list[CommandRecord]:
@@ -199,6 +202,11 @@ class RecordedFile:
         self._recording.close()
         for file in self._files:
             file.close()
+
+
+def plain(value: Any) -> Any:
+    """Numbers of a sequence as a list, as a channel has them."""
+    return value.tolist() if isinstance(value, np.ndarray) else value
 
 
 def node_fields(status: Any) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import struct
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from math import acos, ceil, hypot, radians
 from pathlib import Path
 
@@ -18,16 +18,13 @@ from cnc_ptp.kinematics.kinematics import Kinematics
 from cnc_ptp.machine.program_files import Search, folder_of
 from cnc_ptp.nc.awaited import reads_the_run
 from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, HomeAxes, LinearMove
-from cnc_ptp.nc.coordinates.codes import offset_values
 from cnc_ptp.nc.coordinates.coordinates import NO_CHANGES, OffsetChanges
 from cnc_ptp.nc.interpreter import interpret
-from cnc_ptp.nc.program import Channel
 from cnc_ptp.parameters import ParameterSet
 from cnc_ptp.parameters.view.axis_view import axis_view
 from cnc_ptp.parameters.view.channel_view import channel_view
 from cnc_ptp.parameters.view.spindle_view import spindle_view
 from cnc_ptp.path.geometry import Arc
-from cnc_ptp.web.faces.offset_table import Rows
 
 MOST_POINTS = 1_000_000
 LONGEST = 60.0
@@ -62,8 +59,8 @@ class Drawing:
     dialect: str | None = None
     files: Mapping[str, str] | None = None
     """Texts of the programs that it calls, by name; None: they are looked for."""
-    offsets: Rows = field(default_factory=dict)
-    """Zero offsets as they are now; others are those of the parameters."""
+    changes: OffsetChanges = NO_CHANGES
+    """Zero offsets that are not those of the parameters."""
     clamp_index: int = 0
     """The clamp position of now."""
 
@@ -89,7 +86,7 @@ def draw(
         files = Search(check_folders(drawing), {}).called(drawing.text, folder_of(drawing.file))
     program = check.parse(drawing.text, drawing.file, files, drawing.dialect)
     pen = Pen(check.axis_names, check.start, most)
-    state = check.state({}, {}, {}, changes_of(check.nc, drawing.offsets), drawing.clamp_index)
+    state = check.state({}, {}, {}, drawing.changes, drawing.clamp_index)
     blocks = interpret(program, check.start, check.nc, state=state.modal, values=state.values, runs=True)
     end = time.monotonic() + seconds
     is_whole = True
@@ -105,18 +102,6 @@ def draw(
     points = pen.points()
     flags = TURNING * turning | CUT_OFF * (not is_whole)
     return HEAD.pack(VERSION, len(points), flags, 0) + points.tobytes()
-
-
-def changes_of(channel: Channel, rows: Rows) -> OffsetChanges:
-    """The zero offsets of a table as the interpreter has them."""
-    changes = {}
-    for index, row in rows.items():
-        values = list(offset_values(channel, NO_CHANGES, index))
-        for place, name in enumerate(channel.axes):
-            if (value := row.get(name)) is not None:
-                values[place] = value * channel.turning.offset_factor(place)
-        changes[index] = tuple(values)
-    return OffsetChanges(changes)
 
 
 def program_check(drawing: Drawing) -> tuple[ProgramCheck, bool]:

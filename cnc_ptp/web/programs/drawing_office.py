@@ -88,7 +88,7 @@ class DrawingOffice:
 
         `replaces`: the channel has this program and these offsets now; what is drawn of others ends.
         """
-        offsets = str((drawing.offsets, drawing.clamp_index))
+        offsets = str((drawing.changes, drawing.clamp_index))
         key = (drawing.channel, drawing.file, drawing.text, str(drawing.files), offsets)
         if key not in self._orders:
             if replaces:

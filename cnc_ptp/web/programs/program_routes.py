@@ -101,7 +101,7 @@ class ProgramRoutes:
         drawing = Drawing(channel, face.kinds, face.sets, face.cycle_time, load.text or "", load.path, files=files)
         if (view := self._view(request)) is not None:
             table = view.tables[channel]
-            drawing = replace(drawing, offsets=table.rows, clamp_index=table.clamp_index)
+            drawing = replace(drawing, changes=table.changes, clamp_index=table.clamp_index)
         points = await self._hub.office.draw(drawing, replaces=not face.is_recording)
         headers = {"Cache-Control": "no-store"}
         response = web.Response(body=points, content_type="application/octet-stream", headers=headers)

@@ -3,6 +3,7 @@ import { button, h, panel, say } from "../dom.js";
 import { fixed } from "../format.js";
 
 const NAMES = ["G54", "G55", "G56", "G57", "G58", "G59"];
+const nameOf = (index) => (index === 0 ? "G53" : NAMES[index - 1] || `G159=${index}`);
 
 export function offsets(app) {
   const { store } = app;
@@ -10,15 +11,16 @@ export function offsets(app) {
   const rows = NAMES.map((name, i) => row(app, i + 1, name, axes));
   const head = h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Offset"), axes.map((axis) => h("th", { scope: "col" }, axis)), h("th", { scope: "col" }, "Teach")));
   const table = h("table", { class: "offsets" }, head, h("tbody", {}, rows.map((one) => one.element)));
-  const active = h("p", { class: "muted" });
-  const element = panel(store.ofChannel("Zero offsets"), active, h("fieldset", { class: "commands" }, h("div", { class: "scroll" }, table)));
+  const [active, first] = [h("p", { class: "muted" }), h("p", { class: "muted" })];
+  const element = panel(store.ofChannel("Zero offsets"), active, first, h("fieldset", { class: "commands" }, h("div", { class: "scroll" }, table)));
 
   const fill = (table) => {
-    for (const { index, values } of table?.offsets || []) rows[index - 1]?.fill(values);
+    for (const { index, values, inactive } of table?.offsets || []) rows[index - 1]?.fill(values, inactive);
+    if (table) say(first, `Programs start with ${nameOf(table.default)}.`);
   };
   const update = () => {
     const now = store.offsets[store.channel];
-    const name = now && (now.zero_name || NAMES[now.zero_index - 1] || "G53");
+    const name = now && (now.zero_name || nameOf(now.zero_index));
     say(active, now ? `Active: ${name}. A new value counts when the offset is selected next.` : "A value counts when the offset is selected next.");
     rows.forEach((one, i) => one.element.classList.toggle("active", now?.zero_index === i + 1));
   };
@@ -35,7 +37,7 @@ function row(app, index, name, axes) {
   const buttons = [button("all", () => teach(), { class: "small", "aria-label": `Teach ${name}, all axes` }), ...axes.map((axis) => button(axis, () => teach(axis), { class: "small", "aria-label": `Teach ${name} ${axis}` }))];
   return {
     element: h("tr", {}, h("th", { scope: "row" }, name), cells.map(({ element }) => h("td", {}, element)), h("td", {}, h("div", { class: "row" }, buttons))),
-    fill: (values) => axes.forEach((axis, i) => axis in values && cells[i].take(values[axis])),
+    fill: (values, inactive) => axes.forEach((axis, i) => axis in values && cells[i].take(values[axis], inactive.includes(axis))),
   };
 }
 
@@ -43,11 +45,8 @@ function row(app, index, name, axes) {
 function cell(app, index, name, axis) {
   const { channel } = app.store;
   const input = h("input", { type: "number", step: "any", "aria-label": `${name} ${axis}`, dataset: { axis } });
-  let [known, asked] = [undefined, 0]; // of the machine, null: it was taught; commands without an answer
-  const show = () => {
-    input.value = typeof known === "number" ? Number(known.toFixed(6)) : "";
-    input.placeholder = known === null ? "taught" : "";
-  };
+  let [known, asked] = [undefined, 0]; // of the machine; commands without an answer
+  const show = () => (input.value = known === undefined ? "" : Number(known.toFixed(6)));
   input.addEventListener("change", async () => {
     const entered = input.value;
     asked += 1;
@@ -61,8 +60,10 @@ function cell(app, index, name, axis) {
   input.addEventListener("blur", () => asked || show());
   return {
     element: input,
-    take(value) {
+    take(value, isInactive) {
       known = value;
+      input.classList.toggle("inactive", isInactive);
+      input.title = isInactive ? "does not count for this axis (G160)" : "";
       if (document.activeElement !== input) show();
     },
   };
