@@ -184,13 +184,8 @@ class PageMessages:
 
     def _acknowledge(self, message: Message) -> None:
         require_role("acknowledge", self._session.user, self._session.role, "operator")
-        view = self._view()
-        numbers = view.alarms.acknowledge(field(message, "alarm", "integer", None), self._session.user)
+        self._view().acknowledge(field(message, "alarm", "integer", None), self._session.user)
         self._session.send(answer(message))
-        if numbers:
-            shown = ", ".join(map(str, numbers[:10])) + (" …" if len(numbers) > 10 else "")
-            self._hub.note(f"{self._session.user}: alarms {shown} acknowledged")
-        view.to_all({"type": "acknowledged", "alarms": numbers, "user": self._session.user})
 
     def _ping(self, message: Message) -> None:
         """For the page, to know how far the server is, and for the server, to know how late jogs come."""

@@ -133,6 +133,18 @@ class View:
         fields = event_fields(event, cycle_time)
         alarm = self.alarms.take(fields)
         self.to_all({"type": "event", **(alarm or fields)})
+        self._tell_acknowledged(self.alarms.acknowledge(event))
+
+    def acknowledge(self, number: int | None, user: str) -> None:
+        """One alarm, or all (None). Raises CncError 26233."""
+        event = self.alarms.acknowledgement(number, user, round(self.face.time / self.face.cycle_time))
+        if event is not None:
+            self.face.publish(event)
+            self._tell_acknowledged(self.alarms.acknowledge(event, is_own=True))
+
+    def _tell_acknowledged(self, acknowledged: Mapping[str, Any] | None) -> None:
+        if acknowledged is not None and acknowledged["alarms"]:
+            self.to_all({"type": "acknowledged", **acknowledged})
 
     def _tell_request(self, request: HandshakeRequest) -> None:
         """A function of a program; pages get those that wait for an acknowledgement."""

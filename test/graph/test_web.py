@@ -216,8 +216,11 @@ PALLETS = """    pzv_grp: {"1": {achse: {"0": {versatz: 15000}}}}
 
 
 def test_a_server_that_begins_late_knows_what_was_before(ros_domain, machine, folder):
-    """Alarms, offsets, the tool, and the function that waits; so a taught offset is known, and the program goes on."""
-    port, pallets = unused_port(), folder / "pallets.yaml"
+    """Alarms, offsets, the tool, and the function that waits; so a taught offset is known, and the program goes on.
+
+    A second server beside it knows who has acknowledged the alarm.
+    """
+    pallets = folder / "pallets.yaml"
     pallets.write_text(machine.read_text().replace("    spdl_anzahl: 1\n", PALLETS))
 
     def before():
@@ -231,14 +234,15 @@ def test_a_server_that_begins_late_knows_what_was_before(ros_domain, machine, fo
             m.channel.start()
             m.run_for(2.0)  # what has come then is behind the last blocks that are kept
 
-    async def story():
+    async def story(port):
         async with ClientSession(cookie_jar=CookieJar(unsafe=True)) as session:
             page = await open_page(session, port)
             await page.state_of("channel", lambda channel: channel.get("tool") == 2)
             offsets = page.hello["offsets"].get("channel") or await page.wait_for("offsets")
             assert (offsets["clamp_index"], offsets["clamp_offset"][0]) == (1, 1.5)
             [alarm] = page.hello["alarms"] or [await page.wait_for("event", lambda event: event.get("alarm"))]
-            assert alarm["source"] == "x"
+            assert (alarm["source"], alarm["acknowledged"]) == ("x", False)
+            assert (await page.ask("acknowledge", alarm=alarm["alarm"]))["ok"]
             [waiting] = page.hello["handshakes"] or [await page.wait_for("handshake")]
             assert (waiting["kind"], waiting["number"], waiting["line"]) == ("M", 6, 2)
             assert (await page.command("plc", "acknowledge", id=waiting["id"]))["ok"]
@@ -249,16 +253,27 @@ def test_a_server_that_begins_late_knows_what_was_before(ros_domain, machine, fo
                 "G55": 4.0,
                 "G56": 2.0,
             }.items()
+            assert await acknowledged_by(session, start()) == "web"
+
+    async def acknowledged_by(session, port):
+        page = await open_page(session, port)
+        [alarm] = page.hello["alarms"] or [await page.wait_for("event", lambda event: event.get("alarm"))]
+        return alarm["acknowledged_by"] or (await page.wait_for("acknowledged"))["user"]
+
+    def start():
+        port = unused_port()
+        server = subprocess.Popen(command("web", "--port", port), stdout=subprocess.PIPE, text=True)
+        servers.append(server)
+        assert f"http://localhost:{port}" in server.stdout.readline()
+        return port
 
     run = Running(pallets, "--composed", "--stay")
-    server = None
+    servers = []
     try:
         before()
-        server = subprocess.Popen(command("web", "--port", port), stdout=subprocess.PIPE, text=True)
-        assert f"http://localhost:{port}" in server.stdout.readline()
-        asyncio.run(asyncio.wait_for(story(), 60.0))
+        asyncio.run(asyncio.wait_for(story(start()), 60.0))
     finally:
-        if server is not None:
+        for server in servers:
             server.kill()
         run.end()
 

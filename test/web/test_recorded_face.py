@@ -17,7 +17,6 @@ from cnc_ptp.protocol.blocks import CommandRecord, Event
 from cnc_ptp.recording.opened import OpenRecording
 from cnc_ptp.recording.writer import Recording
 from cnc_ptp.web.faces import recorded_file
-from cnc_ptp.web.faces.alarms import KEPT, Alarms
 from cnc_ptp.web.faces.program_watch import Load
 from cnc_ptp.web.faces.recorded_face import recorded_face
 from cnc_ptp.web.faces.recorded_file import RecordedFile
@@ -287,17 +286,6 @@ def test_an_alarm_stays_acknowledged_where_it_is_seen_again(failed):
             assert again[1] == second and not second["acknowledged"]
 
     asyncio.run(story())
-
-
-def test_of_many_alarms_the_newest_are_known():
-    alarms = Alarms()
-    events = [Event(cycle, "x", 2, 0, f"error {cycle}") for cycle in range(KEPT + 5)]
-    alarms.begin_again([*events, Event(9999, "x", 0, 0, "no alarm")], 1e-3)
-    known = alarms.list()
-    assert (len(known), known[0]["alarm"], known[0]["text"]) == (KEPT, 6, "error 5")
-    assert (known[-1]["alarm"], known[-1]["text"]) == (KEPT + 5, f"error {KEPT + 4}")
-    alarms.begin_again(events[:2], 1e-3)
-    assert [(alarm["alarm"], alarm["text"]) for alarm in alarms.list()] == [(1, "error 0"), (2, "error 1")]
 
 
 def test_a_page_has_the_offsets_of_its_time(tmp_path):

@@ -136,18 +136,6 @@ def test_too_many_pages_of_one_user(users, monkeypatch):
     run(story, users=users)
 
 
-def test_acknowledged_alarms_are_noted():
-    async def story(here):
-        page = await here.page()
-        assert not (await page.command("x", "move_absolute", target=5000))["ok"]
-        alarm = (await page.wait_for("event", lambda event: event.get("alarm")))["alarm"]
-        assert (await page.ask("acknowledge"))["ok"]
-        text = f"web: alarms {alarm} acknowledged"
-        assert await page.wait_for("event", lambda event: event["text"] == text)
-
-    run(story)
-
-
 def test_a_snapshot_is_sent_piece_by_piece_and_alone(monkeypatch, users):
     may_end = asyncio.Event()
 

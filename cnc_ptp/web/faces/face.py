@@ -11,10 +11,12 @@ from cnc_ptp.client.faults import unknown_unit
 from cnc_ptp.client.link import Reply
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import ParameterSet
-from cnc_ptp.protocol.blocks import ChannelOffsets, CommandRecord, CycleBlock, Event, HandshakeRequest
+from cnc_ptp.protocol.blocks import ChannelOffsets, CommandRecord, CycleBlock, Event, HandshakeRequest, Severity
 from cnc_ptp.web.faces.program_watch import Load
 from cnc_ptp.web.numbers import NO_SNAPSHOT
 
+SOURCE = "web"
+"""Of events that say who has done what."""
 State = Mapping[str, Mapping[str, Any]]
 """Unit -> its fields, as protocol.py sends them."""
 
@@ -113,9 +115,13 @@ class Face(ABC):
         """The face of one page: a recording has another time on each."""
         return self
 
-    @abstractmethod
     def note(self, cycle: int, text: str) -> None:
         """An event for recordings: who has done what."""
+        self.publish(Event(cycle, SOURCE, Severity.INFO, 0, text))
+
+    @abstractmethod
+    def publish(self, event: Event) -> None:
+        """An event of this server, for recordings and other servers."""
 
     @abstractmethod
     async def run(self) -> None:

@@ -33,9 +33,9 @@ from cnc_ptp.nodes.topics import (
     offsets_topic,
     program_topic,
 )
-from cnc_ptp.protocol.blocks import ChannelOffsets, Event, HandshakeRequest, Severity, read_values
+from cnc_ptp.protocol.blocks import ChannelOffsets, Event, HandshakeRequest, read_values
 from cnc_ptp.web.faces.face import News
-from cnc_ptp.web.faces.machine_face import SOURCE, MachineFace, taken
+from cnc_ptp.web.faces.machine_face import MachineFace, taken
 from cnc_ptp.wire.block_codec import channel_offsets
 
 NODE = "web"
@@ -185,8 +185,8 @@ class LiveFace(MachineFace):
         number = 0 if response.accepted else response.error_id
         return Reply(response.cycle, number, response.message, read_values(response.values_json), response.job)
 
-    def note(self, cycle: int, text: str) -> None:
-        self._graph.publish_event(Event(cycle, SOURCE, Severity.INFO, 0, text))
+    def publish(self, event: Event) -> None:
+        self._graph.publish_event(event)
 
     def _send_jog(self, axis: str, velocity: float, user: str) -> None:
         self._graph.jog(axis, velocity, NODE if user == NODE else f"{NODE}:{user}")

@@ -30,9 +30,6 @@ from cnc_ptp.web.faces.scope import signals_of
 from cnc_ptp.web.faces.unit_fields import unit_states
 from cnc_ptp.web.numbers import STOPPED
 
-SOURCE = "web"
-"""Of events that say who has given a command."""
-
 
 class MachineFace(Face):
     """What the graph and an offline machine have in common: their link."""
@@ -155,9 +152,8 @@ class MachineFace(Face):
                 raise CncError(STOPPED, f"{kind} {unit}: {command}: a stop came before it", "it was not sent")
             return await self._answer_to(unit, command, arguments, user)
 
-    def note(self, cycle: int, text: str) -> None:
-        """An event of this process, for recordings: who has done what."""
-        self._link.seen.take_event(Event(cycle, SOURCE, Severity.INFO, 0, text))
+    def publish(self, event: Event) -> None:
+        self._link.seen.take_event(event)
 
     async def _answer_to(self, unit: str, command: str, arguments: Mapping[str, Any], user: str) -> Reply:
         ticket = self._link.give(unit, command, arguments)

@@ -11,7 +11,7 @@ from typing import Any
 
 from cnc_ptp.client.link import Reply
 from cnc_ptp.errors import CncError
-from cnc_ptp.protocol.blocks import CycleBlock
+from cnc_ptp.protocol.blocks import CycleBlock, Event
 from cnc_ptp.web.faces.description import describe_commands
 from cnc_ptp.web.faces.face import Face, News, Past, State
 from cnc_ptp.web.faces.program_watch import Load
@@ -206,7 +206,7 @@ class RecordedFace(Face):
     def jog(self, axis: str, velocity: float, *, user: str) -> None:
         raise is_recording(f"{axis}: jog")
 
-    def note(self, cycle: int, text: str) -> None:
+    def publish(self, event: Event) -> None:
         """Nothing is written."""
 
     def close(self) -> None:

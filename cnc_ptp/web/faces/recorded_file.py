@@ -19,7 +19,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes.topics import BLOCK_CLASSES
 from cnc_ptp.parameters import load_machine
-from cnc_ptp.protocol.blocks import ChannelOffsets, CommandRecord, CycleBlock, Event, Severity
+from cnc_ptp.protocol.blocks import ChannelOffsets, CommandRecord, CycleBlock, Event, EventValue, Severity
 from cnc_ptp.recording.command_words import is_load
 from cnc_ptp.recording.mcap_chunks import CORRUPT
 from cnc_ptp.recording.mcap_index import NOT_CLOSED
@@ -165,10 +165,11 @@ class RecordedFile:
     def _read_events(self) -> list[Event]:
         if "/events" not in self._recording.topics:
             return []
-        names = ("cycle", "source", "severity", "error_id", "text", "line")
+        known = self._recording.topics["/events"].fields
+        names = [each.name for each in fields(Event) if each.name in known]  # older recordings have no values
         columns = self._recording.columns("/events", *names)
         rows = zip(*(columns[name].tolist() for name in names), strict=True)
-        events = (Event(*row) for row in rows)
+        events = (recorded_event(dict(zip(names, row, strict=True))) for row in rows)
         return sorted((each for each in events if each.severity <= max(Severity)), key=lambda event: event.cycle)
 
     def _read_offsets(self) -> list[tuple[str, ChannelOffsets]]:
@@ -207,6 +208,12 @@ class RecordedFile:
 def plain(value: Any) -> Any:
     """Numbers of a sequence as a list, as a channel has them."""
     return value.tolist() if isinstance(value, np.ndarray) else value
+
+
+def recorded_event(fields: dict[str, Any]) -> Event:
+    """The roles of its values are left out."""
+    values = fields.pop("values", [])
+    return Event(**fields, values=[EventValue(value["name"], value["value"], value["unit"]) for value in values])
 
 
 def node_fields(status: Any) -> dict[str, Any]:
