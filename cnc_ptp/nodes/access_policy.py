@@ -16,6 +16,7 @@ from xml.etree import ElementTree
 from cnc_ptp.machine.wiring import unit_kinds, wiring
 from cnc_ptp.nodes.observed_topics import observed_topics
 from cnc_ptp.nodes.topics import (
+    ACKNOWLEDGED,
     CHECKPOINTS,
     COMMAND,
     COUPLING_SERVICES,
@@ -119,7 +120,7 @@ def add_interface(node: NodeAccess, machine: MachineParameters) -> None:
     """What the PLC node is for external PLCs and clients."""
     kinds = {unit: kind for unit, kind in unit_kinds(machine).items() if kind != "plc"}
     node.publish |= {JOINT_STATES, f"{EMERGENCY_STOP_TOPIC}/active", *map(hli_status_topic, kinds)}
-    node.subscribe |= {LIFE_SIGN, EMERGENCY_STOP_TOPIC, TRAJECTORY_TOPIC, EVENT, COMMAND}
+    node.subscribe |= {LIFE_SIGN, ACKNOWLEDGED, EMERGENCY_STOP_TOPIC, TRAJECTORY_TOPIC, EVENT, COMMAND}
     node.subscribe |= {plc_topic(unit, name) for unit, kind in kinds.items() for name in PLC_TOPICS[kind]}
     of_axes = [*COUPLING_SERVICES, *SERIES_SERVICES]
     node.reply |= {f"{axis}/{name}" for axis in machine.axes for name in of_axes} | {*EMERGENCY_SERVICES}
@@ -167,7 +168,7 @@ def client_access(machine: MachineParameters, units: Iterable[NodeAccess]) -> No
     nodes = [*units, recorder_access(machine)]
     return NodeAccess(
         CLIENT,
-        publish={EVENT, PARAMETER_EVENTS, *map(jog_topic, machine.axes)},
+        publish={EVENT, ACKNOWLEDGED, PARAMETER_EVENTS, *map(jog_topic, machine.axes)},
         subscribe=reads,
         request={service for node in nodes for service in node.reply},
         call={name for node in nodes for name in node.execute},

@@ -30,7 +30,16 @@ from cnc_ptp.nodes.bridge.plc_watch import PlcWatch
 from cnc_ptp.nodes.bridge.setpoint_services import SetpointServices
 from cnc_ptp.nodes.bridge.trajectory_server import TrajectoryServer
 from cnc_ptp.nodes.bridge.value_topics import ValueTopics
-from cnc_ptp.nodes.topics import LIFE_SIGN, PLC_INPUT, PLC_TOPICS, VALUE_TOPICS, plc_quality, plc_topic
+from cnc_ptp.nodes.topics import (
+    ACKNOWLEDGED,
+    EVENTS,
+    LIFE_SIGN,
+    PLC_INPUT,
+    PLC_TOPICS,
+    VALUE_TOPICS,
+    plc_quality,
+    plc_topic,
+)
 from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.parameters.view.authority import OF_PLC, OF_SERVICES, OF_TOPICS
@@ -56,7 +65,8 @@ class PlcBridgeNode(UnitNode):
     /joint_states (sensor_msgs/JointState) of all axes and spindles; /emergency_stop/active (std_msgs/Bool).
     Subscriptions besides: /<channel|axis|spindle>/override (Override), /<channel|axis|spindle>/feed_hold (Switch),
     /<axis|spindle>/enable (Switch), /<axis>/feed_release (FeedRelease), /<axis>/external_setpoint (ExternalSetpoint),
-    /<axis>/jog (Jog), /plc/life_sign (LifeSign), /<unit>/hli/control (<Kind>HliControl), /emergency_stop (Bool).
+    /<axis>/jog (Jog), /plc/life_sign (LifeSign), /<unit>/hli/control (<Kind>HliControl), /emergency_stop (Bool),
+    /plc/acknowledged (Event; published again on /events).
     Services besides: /emergency_stop/press, release, reset (std_srvs/Trigger).
     Actions: /trajectory/follow_joint_trajectory (FollowTrajectory), beside the topic /trajectory/joint_trajectory;
     /<axis|spindle>/function_block (FunctionBlock); cancel = halt.
@@ -116,6 +126,7 @@ class PlcBridgeNode(UnitNode):
         self._hli_topics = HliTopics(self, self._hli)
         self._emergency_stop = EmergencyStopTopics(self, self.plc, self._warn)
         self.create_subscription(msg.LifeSign, LIFE_SIGN, self._on_life_sign, PLC_INPUT)
+        self.create_subscription(msg.Event, ACKNOWLEDGED, self._publications.pass_on, EVENTS)
         if isfinite(self._life_sign_timeout):
             process.timer(self, self._life_sign_timeout / 4.0, self._watch_topics)
         self._answers = CouplingServices(self, self.plc, list(self._machine.axes))

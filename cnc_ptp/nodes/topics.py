@@ -49,6 +49,7 @@ JOINT_STATES = "joint_states"
 DRIVE_STOPS = "drive_stops"
 CHECKPOINTS = "checkpoints"
 LIFE_SIGN = "plc/life_sign"
+ACKNOWLEDGED = "plc/acknowledged"
 """Names are relative: they are in the namespace of the nodes."""
 
 BLOCK_TYPES: dict[str, Any] = {

@@ -218,7 +218,7 @@ PALLETS = """    pzv_grp: {"1": {achse: {"0": {versatz: 15000}}}}
 def test_a_server_that_begins_late_knows_what_was_before(ros_domain, machine, folder):
     """Alarms, offsets, the tool, and the function that waits; so a taught offset is known, and the program goes on.
 
-    A second server beside it knows who has acknowledged the alarm.
+    The next server, once it was killed, knows who has acknowledged the alarm.
     """
     pallets = folder / "pallets.yaml"
     pallets.write_text(machine.read_text().replace("    spdl_anzahl: 1\n", PALLETS))
@@ -253,6 +253,8 @@ def test_a_server_that_begins_late_knows_what_was_before(ros_domain, machine, fo
                 "G55": 4.0,
                 "G56": 2.0,
             }.items()
+            servers[0].kill()
+            servers[0].wait()
             assert await acknowledged_by(session, start()) == "web"
 
     async def acknowledged_by(session, port):

@@ -98,6 +98,10 @@ class UnitPublications:
     def event(self, event: Event) -> None:
         self._events.publish(convert.event_to_message(event, self.stamp(event.cycle)))
 
+    def pass_on(self, event: msg.Event) -> None:
+        """An event of a process that may end before others ask for it."""
+        self._events.publish(event)
+
     def tell(self, cycle: int, severity: int, error_id: int, text: str) -> None:
         """An event of the node, not of its unit."""
         self.event(Event(cycle, self._unit.name, severity, error_id, text))

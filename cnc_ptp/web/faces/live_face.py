@@ -23,6 +23,7 @@ from cnc_ptp.nodes import convert
 from cnc_ptp.nodes.client.calls_in_flight import CallsInFlight
 from cnc_ptp.nodes.client.machine_client import MachineClient, services_of
 from cnc_ptp.nodes.topics import (
+    ACKNOWLEDGED,
     DIAGNOSTICS,
     EVENT,
     EVENTS,
@@ -36,6 +37,7 @@ from cnc_ptp.nodes.topics import (
 from cnc_ptp.protocol.blocks import ChannelOffsets, Event, HandshakeRequest, read_values
 from cnc_ptp.web.faces.face import News
 from cnc_ptp.web.faces.machine_face import MachineFace, taken
+from cnc_ptp.web.numbers import ALARM_ACKNOWLEDGED
 from cnc_ptp.wire.block_codec import channel_offsets
 
 NODE = "web"
@@ -70,6 +72,7 @@ class WebLink(GraphLink):
         self.events, self.records = self.seen.events(), self.seen.records()  # before the first one comes
         super()._subscribe(client)
         self._event_publisher = client.create_publisher(msg.Event, EVENT, EVENTS)
+        self._acknowledged_publisher = client.create_publisher(msg.Event, ACKNOWLEDGED, EVENTS)
         client.create_subscription(DiagnosticArray, DIAGNOSTICS, self._take_diagnostics, PLC_INPUT)
         for unit, kind in self.kinds.items():
             if kind == "channel":
@@ -137,8 +140,13 @@ class WebLink(GraphLink):
         self._jog_publishers[axis].publish(message)
 
     def publish_event(self, event: Event) -> None:
-        """For recordings and other clients; its stamp is that of its cycle there."""
-        self._event_publisher.publish(convert.event_to_message(event, Time()))
+        """For recordings and other clients; its stamp is that of its cycle there.
+
+        Acknowledgements by the PLC's node: DDS keeps what a process has published only as long as the process.
+        """
+        is_kept = event.error_id == ALARM_ACKNOWLEDGED
+        publisher = self._acknowledged_publisher if is_kept else self._event_publisher
+        publisher.publish(convert.event_to_message(event, Time()))
 
     def require_machine(self) -> None:
         """Raises CncError 26171 when it is gone."""
