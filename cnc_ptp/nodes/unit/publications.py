@@ -99,8 +99,9 @@ class UnitPublications:
         self._events.publish(convert.event_to_message(event, self.stamp(event.cycle)))
 
     def pass_on(self, event: msg.Event) -> None:
-        """An event of a process that may end before others ask for it."""
-        self._events.publish(event)
+        """A numbered information of a process that may end before others ask for it; alarms are not made for others."""
+        if event.severity == msg.Event.INFO and event.error_id:
+            self._events.publish(event)
 
     def tell(self, cycle: int, severity: int, error_id: int, text: str) -> None:
         """An event of the node, not of its unit."""
