@@ -37,6 +37,7 @@ FLUSHED = 600
 RETRACTED = 0.01
 """mm; the retract begins within a block of its event."""
 HELD_SHARE, TERM_SHARE = 0.3, 0.2
+INTERRUPTED = "P-ERR-26106"
 
 
 @dataclass
@@ -147,7 +148,9 @@ def await_end(graph: Graph, fault: Fault) -> str:
         graph.interrupt()
         if not graph.wait(END_PATIENCE):
             return "does not end"
-        return "over" if graph.process.returncode in (0, -signal.SIGINT) and graph.summed_up else "survived"
+        finished = graph.process.returncode == 0 and INTERRUPTED not in graph.output
+        finished = finished or graph.process.returncode == -signal.SIGINT
+        return "over" if finished and graph.summed_up else "survived"
     if not graph.wait(END_PATIENCE):
         return "does not end"
     whole = fault.signal == HOLD or (fault.signal == TERM and fault.node == "recorder")
@@ -177,7 +180,7 @@ def left_behind(graph: Graph, fault: Fault, outcome: str) -> Iterator[str]:
 def names(fault: Fault, graph: Graph) -> list[str]:
     """Texts of which one must be told, if the run has stopped."""
     if fault.node == SUPERVISOR:
-        return ["P-ERR-26106"] if fault.signal == TERM else [""]
+        return [INTERRUPTED] if fault.signal == TERM else [""]
     if fault.node == SERVER:
         return [SERVER_ENDED] if fault.signal != HOLD else ["P-ERR-"]
     died = f"P-ERR-26104 node '{fault.node}' (process {graph.processes[fault.node].pid})"

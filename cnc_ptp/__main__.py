@@ -38,6 +38,8 @@ def is_our_mistake(error: ImportError) -> bool:
     if (error.name or "").partition(".")[0] == "cnc_ptp":
         interfaces = Path(__file__).with_name("msg") / "__init__.py"
         return interfaces.is_file()
+    if isinstance(error.__cause__, ImportError):  # packages tell it in their own words
+        return is_our_mistake(error.__cause__)
     return not isinstance(error, ModuleNotFoundError) and not (error.path or "").endswith(".so")
 
 

@@ -38,30 +38,31 @@ OPTIMISATION = "1"
 
 def build(folder: Path) -> str:
     """Makes the library in `folder`. Returns why it could not be made, empty when it was."""
-    with alone(folder):
-        return build_alone(folder)
+    work = PACKAGE.parent / "build" / f"kernel-{sys.implementation.cache_tag}"
+    with alone(work):
+        return build_alone(folder, work)
 
 
 @contextmanager
-def alone(folder: Path) -> Iterator[None]:
-    """Another build of the same library ends first."""
-    folder.mkdir(parents=True, exist_ok=True)
-    held = os.open(folder, os.O_RDONLY)
-    try:
-        fcntl.flock(held, fcntl.LOCK_EX)
+def alone(work: Path) -> Iterator[None]:
+    """Another build with the same C sources ends first."""
+    work.mkdir(parents=True, exist_ok=True)
+    with (work / "lock").open("w") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            print("Another compilation of the kernel is under way; waiting for its end ...", file=sys.stderr)
+            fcntl.flock(file, fcntl.LOCK_EX)
         yield
-    finally:
-        os.close(held)
 
 
-def build_alone(folder: Path) -> str:
+def build_alone(folder: Path, work: Path) -> str:
     files = sources()
     state = hashes(files | recipe())
     if read_state(folder) == state and library_file(folder).is_file():
         return ""
     print(f"Compiling the kernel, {len(files)} sources (three to six minutes on two cores) ...", file=sys.stderr)
     write_state(folder, {FAILURE: "it is being compiled, or its compilation was interrupted", **state})
-    work = PACKAGE.parent / "build" / f"kernel-{sys.implementation.cache_tag}"
     failure = ""
     try:
         make_library([file.relative_to(PACKAGE.parent) for file in files.values()], work, folder)
@@ -78,6 +79,7 @@ def make_library(files: list[Path], work: Path, folder: Path) -> None:
     """`work` keeps C sources and objects for the next time."""
     os.chdir(PACKAGE.parent)  # tracebacks name files as they are given here
     library = compile_library(translate(files, work), work)
+    folder.mkdir(parents=True, exist_ok=True)
     beside = folder / f"{os.getpid()}.new"
     shutil.copy2(library, beside)
     os.replace(beside, library_file(folder))  # a node that runs keeps the library that it has

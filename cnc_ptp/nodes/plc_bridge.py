@@ -32,7 +32,6 @@ from cnc_ptp.nodes.bridge.trajectory_server import TrajectoryServer
 from cnc_ptp.nodes.bridge.value_topics import ValueTopics
 from cnc_ptp.nodes.topics import (
     ACKNOWLEDGED,
-    EVENTS,
     LIFE_SIGN,
     PLC_INPUT,
     PLC_TOPICS,
@@ -126,7 +125,7 @@ class PlcBridgeNode(UnitNode):
         self._hli_topics = HliTopics(self, self._hli)
         self._emergency_stop = EmergencyStopTopics(self, self.plc, self._warn)
         self.create_subscription(msg.LifeSign, LIFE_SIGN, self._on_life_sign, PLC_INPUT)
-        self.create_subscription(msg.Event, ACKNOWLEDGED, self._publications.pass_on, EVENTS)
+        self.create_subscription(msg.Event, ACKNOWLEDGED, self._publications.pass_on, PLC_INPUT)
         if isfinite(self._life_sign_timeout):
             process.timer(self, self._life_sign_timeout / 4.0, self._watch_topics)
         self._answers = CouplingServices(self, self.plc, list(self._machine.axes))

@@ -74,6 +74,8 @@ STALE = 0.2
 """Seconds in which it gets what has waited for it."""
 QUIET = 0.2
 """Seconds without a message after which a recorder that is to end has seen everything."""
+ALONE_AFTER = 1.0
+"""Seconds without a tick after which units go on alone, as far as they get."""
 LOOK_PERIOD = 0.05
 """Seconds between two looks for ticks and blocks."""
 
@@ -283,8 +285,8 @@ class RecorderNode(PollingNode):
         data = with_plain_header(block_class, data, self._recording.stamps)
         codec_of(block_class).check(data, self._block_cycles)  # what units leave out takes no place of a block
         stamp_ns, first_cycle, count = head_of(data)
-        most = max(self._last_tick, self._next_cycle[unit]) + self._most_ahead  # a unit may go on without a clock
-        if first_cycle > most:
+        most = max(self._last_tick + self._most_ahead, self._next_cycle[unit])
+        if first_cycle > most and time.monotonic() < self._ticked_at + ALONE_AFTER:
             where = f"its first cycle is {first_cycle}, and at most {most} is possible now"
             raise unreadable(block_class.__name__, data, where)
         if unit == PLC:

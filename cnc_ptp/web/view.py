@@ -90,13 +90,15 @@ class View:
             self._tell_event(event, self.face.cycle_time)
         for request in news.requests:
             self._tell_request(request)
-        self._tell_earlier_offsets(news.offsets)
+        for channel, offsets in news.offsets:
+            self._tell_offsets(channel, offsets)
         for record in news.records:
             self._tell_answered(record, [*self._blocks, *news.blocks])
         for unit, block in news.blocks:
             if isinstance(block, ChannelBlock):
                 self._distances.take_block(unit, block)
-                self._tell_offsets(unit, block)
+                for offsets in block.offsets:
+                    self._tell_offsets(unit, offsets)
                 self._tell_done(self.handshakes.take_block(unit, block))
         self._blocks = news.blocks
         self._tell_tables()
@@ -184,16 +186,9 @@ class View:
         known = {"events": events, "alarms": self.alarms.list(), "offsets": self.offsets}
         self.to_all({"type": "past", **known, "nodes": [*past.diagnostics]})
 
-    def _tell_earlier_offsets(self, earlier: Sequence[tuple[str, ChannelOffsets]]) -> None:
-        """From before the first block: the newest of each channel."""
-        for channel, offsets in earlier:
-            self._take_offsets(channel, offsets)
-        for channel in {channel for channel, _ in earlier}:
-            self.to_all({"type": "offsets", **self.offsets[channel]})
-
-    def _tell_offsets(self, channel: str, block: ChannelBlock) -> None:
-        for offsets in block.offsets:
-            self._take_offsets(channel, offsets)
+    def _tell_offsets(self, channel: str, offsets: ChannelOffsets) -> None:
+        """Of a block, or of their topic; once."""
+        if self._take_offsets(channel, offsets):
             self.to_all({"type": "offsets", **self.offsets[channel]})
 
     def _tell_tables(self) -> None:
@@ -202,8 +197,11 @@ class View:
             if (shown := table.news()) is not None:
                 self.to_all({"type": "zero_offsets", "channel": channel, **shown})
 
-    def _take_offsets(self, channel: str, offsets: ChannelOffsets) -> None:
-        """They may come late."""
+    def _take_offsets(self, channel: str, offsets: ChannelOffsets) -> bool:
+        """They may come late, and twice; whether they are new."""
         self.tables[channel].take(offsets)
-        if self.offsets.get(channel, {}).get("cycle", 0) <= offsets.cycle:
-            self.offsets[channel] = {"channel": channel, **asdict(offsets)}
+        known, told = self.offsets.get(channel, {}), {"channel": channel, **asdict(offsets)}
+        if known == told or known.get("cycle", 0) > offsets.cycle:
+            return False
+        self.offsets[channel] = told
+        return True

@@ -314,8 +314,9 @@ def test_a_unit_that_has_died_before_its_first_block_is_torn_from_nobody():
 class Ended:
     """A graph that ends by itself after its `wait` was asked so often, with this status and these texts."""
 
-    def __init__(self, status, *, waits=0, summed_up=True):
+    def __init__(self, status, *, waits=0, summed_up=True, output="machine time 3 s"):
         self.process = SimpleNamespace(returncode=status)
+        self.output = output
         self.summed_up = summed_up
         self._waits = waits
 
@@ -338,6 +339,7 @@ class Ended:
         (HOLD, "x", Ended(130, waits=1), "survived"),
         (HOLD, "x", Ended(-2, waits=1), "over"),
         (HOLD, "x", Ended(0, waits=1), "over"),
+        (HOLD, "x", Ended(0, waits=1, output="P-ERR-26106 interrupted"), "survived"),
         (HOLD, "x", Ended(-2, waits=1, summed_up=False), "survived"),
         (HOLD, "x", Ended(0, waits=2), "does not end"),
         (KILL, "x", Ended(0, waits=1), "does not end"),

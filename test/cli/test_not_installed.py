@@ -46,4 +46,7 @@ def test_a_mistake_of_ours_keeps_its_traceback() -> None:
     assert entry.is_our_mistake(ImportError("cannot import name 'x' from 'numpy'", name="numpy", path="numpy/a.py"))
     assert entry.is_our_mistake(ImportError("no name at all"))
     assert not entry.is_our_mistake(ModuleNotFoundError("No module named 'rich.box'", name="rich.box"))
+    of_numpy = ImportError("IMPORTANT: PLEASE READ THIS")
+    of_numpy.__cause__ = ImportError("libblas.so: cannot open", name="_multiarray_umath", path="/lib/_umath.so")
+    assert not entry.is_our_mistake(of_numpy)
     assert not entry.is_our_mistake(ImportError("librcl.so: cannot open", name="_rclpy", path="/lib/_rclpy.so"))

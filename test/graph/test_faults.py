@@ -23,7 +23,7 @@ from cnc_ptp.nodes import process
 from cnc_ptp.nodes.client.latest_blocks import LatestBlocks
 from cnc_ptp.nodes.clock import ClockNode
 from cnc_ptp.nodes.monitor import RunMonitor
-from cnc_ptp.nodes.recorder import RecorderNode
+from cnc_ptp.nodes.recorder import ALONE_AFTER, RecorderNode
 from cnc_ptp.nodes.topics import (
     BLOCKS,
     CHECKPOINTS,
@@ -185,7 +185,7 @@ def test_blocks_behind_the_stop_of_a_drive_are_not_recorded(around, tmp_path):
 
 
 @pytest.mark.motion_unchecked("random numbers")
-@pytest.mark.parametrize("foreign", [2011, 60_010])
+@pytest.mark.parametrize("foreign", [2001, 60_010])
 def test_a_block_that_is_far_ahead_of_the_clock_costs_none_of_those_that_follow(around, tmp_path, foreign):
     path = tmp_path / "a.mcap"
     outside, recorder, spin_until = around(lambda: RecorderNode(read_machine(str(PTP)), str(path), PTP.read_text()))
@@ -202,7 +202,7 @@ def test_a_block_that_is_far_ahead_of_the_clock_costs_none_of_those_that_follow(
     assert read_recording(path).states["/x/state"]["cycle"].tolist() == list(range(20))
     (text,) = told
     assert text.startswith("recorder: topic x/block: ") and text.endswith(
-        f" bytes are no message AxisBlock: its first cycle is {foreign}, and at most 2010 is possible now; they are ignored"
+        f" bytes are no message AxisBlock: its first cycle is {foreign}, and at most 2000 is possible now; they are ignored"
     )
 
 
@@ -219,6 +219,23 @@ def test_a_unit_that_goes_on_without_a_clock_is_recorded_to_its_standstill(aroun
     recorder._on_block("x", AxisBlock, encode_block(blocks.axis(5000), STAMPS))
     recorder.destroy_node()
     assert read_recording(path).states["/x/state"]["cycle"].tolist() == list(range(5010))
+
+
+@pytest.mark.motion_unchecked("random numbers")
+def test_after_a_gap_a_unit_without_a_clock_is_recorded_and_with_one_nobody_climbs_ahead(around, tmp_path):
+    path = tmp_path / "a.mcap"
+    _, recorder, _ = around(lambda: RecorderNode(read_machine(str(PTP)), str(path), PTP.read_text()))
+    blocks = Blocks(1)
+    recorder._on_tick(Tick(0, 10, 1, 0))
+    for first_cycle in (0, 2000):
+        recorder._on_block("x", AxisBlock, encode_block(blocks.axis(first_cycle), STAMPS))
+    with pytest.raises(CncError, match="its first cycle is 4000, and at most 2010 is possible now"):
+        recorder._on_block("x", AxisBlock, encode_block(blocks.axis(4000), STAMPS))
+    recorder._ticked_at -= ALONE_AFTER
+    recorder._on_block("x", AxisBlock, encode_block(blocks.axis(4000), STAMPS))
+    recorder.destroy_node()
+    cycles = [*range(10), *range(2000, 2010), *range(4000, 4010)]
+    assert read_recording(path).states["/x/state"]["cycle"].tolist() == cycles
 
 
 @pytest.mark.motion_unchecked("random numbers")

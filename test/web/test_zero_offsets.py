@@ -9,6 +9,7 @@ from web_support import MILL, ROOT, site
 
 from cnc_ptp.parameters import machine_text, read_machine
 from cnc_ptp.protocol.blocks import ChannelOffsets, CommandRecord
+from cnc_ptp.web.faces.face import News
 from cnc_ptp.web.faces.offset_table import OffsetTable
 from cnc_ptp.web.programs.backplot import HEAD
 
@@ -117,6 +118,23 @@ def test_a_backplot_has_the_zero_offsets_of_now():
     asyncio.run(story())
 
 
+def test_offsets_of_a_lost_block_come_by_their_topic_and_those_that_come_twice_are_told_once():
+    async def story():
+        async with site() as here:
+            page = await here.page()
+            view, row = here.hub.shared, {"changed_offsets": [1.0, 2.0, 3.0], "changed_inactive": [False] * 3}
+            for _ in range(2):
+                view._tell_news(News(offsets=[("channel", told(10**9, changed_indices=[2], **row))]))
+            assert rows_of(await page.wait_for("zero_offsets"))[2] == {"X": 1.0, "Y": 2.0, "Z": 3.0}
+            assert (await page.wait_for("offsets", lambda offsets: offsets["cycle"] == 10**9))["zero_index"] == 2
+            await page.ask("offsets")
+            assert not [
+                each for each in page.waiting if each["type"] in ("offsets", "zero_offsets") and "cycle" in each
+            ]
+
+    asyncio.run(story())
+
+
 def test_a_backplot_has_what_programs_have_changed_of_the_tables():
     """The zero offset at program start, and that one does not count for an axis."""
 
@@ -189,13 +207,13 @@ def test_offsets_of_a_facing_axis_are_diameters_where_the_machine_wants_that(tmp
     """P-CHAN-00091: commands and the table have diameters; the axis goes by radii, and topics show them."""
     lathe = tmp_path / "lathe.yaml"
     text = machine_text(str(ROOT / "config" / "lathe.yaml"))
-    lathe.write_text(
-        text.replace("    spdl_anzahl: 2", "    versch_im_durchm: 1\n    spdl_anzahl: 2"), encoding="utf-8"
-    )
+    own = '    versch_im_durchm: 1\n    np_grp: {"1": {achse: {"0": {versch: 300000}, "1": {versch: 20000}}}}\n'
+    lathe.write_text(text.replace("    spdl_anzahl: 2", f"{own}    spdl_anzahl: 2"), encoding="utf-8")
 
     async def story():
         async with site(str(lathe)) as here:
             page = await here.page()
+            assert rows_of(await page.ask("offsets"))[1] == {"X": 30.0, "Z": 2.0}, "of the machine file"
             assert (await page.command("channel", "set_zero_offset", index=2, axis="X", value=40))["ok"]
             assert rows_of(await page.wait_for("zero_offsets"))[2]["X"] == 40.0
             assert (await page.ask("load", name="part.nc", text="G18 G55 G00 X0 Z0\nM30\n"))["ok"]

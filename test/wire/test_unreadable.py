@@ -2,6 +2,7 @@
 
 import struct
 from dataclasses import replace
+from math import inf
 from types import SimpleNamespace
 
 import pytest
@@ -159,6 +160,8 @@ def test_what_cannot_be_read_takes_no_place_in_a_recording():
         _recording=SimpleNamespace(stamps=STAMPS),
         _block_cycles=10,
         _last_tick=0,
+        _next_cycle={"x": 0, "plc": 0},
+        _ticked_at=inf,
         _most_ahead=60_000,
         _last_plc=b"",
         _is_new=lambda *head: taken.append(head),
@@ -170,7 +173,7 @@ def test_what_cannot_be_read_takes_no_place_in_a_recording():
     plc = encode_block(PlcBlock(10, 10), STAMPS)
     assert "no message PlcBlock: " in refusal(RecorderNode._on_block, recorder, "plc", PlcBlock, plc[:34])
     far = encode_block(PlcBlock(60_010, 10), STAMPS)
-    assert "the newest tick 0" in refusal(RecorderNode._on_block, recorder, "plc", PlcBlock, far)
+    assert "at most 60000 is possible now" in refusal(RecorderNode._on_block, recorder, "plc", PlcBlock, far)
     assert (taken, recorder._last_plc) == ([], b"")
     RecorderNode._on_block(recorder, "x", AxisBlock, good)
     RecorderNode._on_block(recorder, "plc", PlcBlock, plc)

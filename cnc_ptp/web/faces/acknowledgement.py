@@ -44,7 +44,7 @@ def of_one(alarm: Alarm, user: str, cycle: int) -> Event:
 
 
 def of_all(alarms: Sequence[Alarm], user: str, cycle: int) -> Event:
-    """Each source up to its last one: it tells its alarms in order, but those of two sources come in any order."""
+    """Each source up to its last one, however many there are; what it tells later of cycles before counts as known."""
     last: dict[str, int] = {}
     for alarm in alarms:
         last[alarm["source"]] = max(last.get(alarm["source"], 0), alarm["cycle"])

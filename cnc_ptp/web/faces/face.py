@@ -32,7 +32,7 @@ class News:
     diagnostics: Sequence[dict[str, Any]] = ()
     """Of nodes, newly told."""
     offsets: Sequence[tuple[str, ChannelOffsets]] = ()
-    """Of channels, from before their first block here."""
+    """Of channels; blocks have them, too, those that came here."""
 
 
 @dataclass(slots=True)

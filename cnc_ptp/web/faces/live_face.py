@@ -72,7 +72,7 @@ class WebLink(GraphLink):
         self.events, self.records = self.seen.events(), self.seen.records()  # before the first one comes
         super()._subscribe(client)
         self._event_publisher = client.create_publisher(msg.Event, EVENT, EVENTS)
-        self._acknowledged_publisher = client.create_publisher(msg.Event, ACKNOWLEDGED, EVENTS)
+        self._acknowledged_publisher = client.create_publisher(msg.Event, ACKNOWLEDGED, PLC_INPUT)
         client.create_subscription(DiagnosticArray, DIAGNOSTICS, self._take_diagnostics, PLC_INPUT)
         for unit, kind in self.kinds.items():
             if kind == "channel":
@@ -178,8 +178,7 @@ class LiveFace(MachineFace):
         news.diagnostics = taken(self._graph.diagnostics)
         for unit, block in news.blocks:
             self._first.setdefault(unit, block.first_cycle)
-        earlier = (each for each in taken(self._graph.offsets) if self._is_earlier(each[0], each[1].cycle))
-        news.offsets = [*news.offsets, *earlier]
+        news.offsets = [*news.offsets, *taken(self._graph.offsets)]  # blocks have them, too, but may be lost
         asked = (each for each in taken(self._graph.requests) if self._is_earlier(each.channel, each.cycle))
         news.requests = [*asked, *news.requests]
         return news

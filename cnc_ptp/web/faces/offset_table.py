@@ -63,16 +63,21 @@ class OffsetTable:
         return {"axes": self._shown_axes, "default": default, "offsets": [self._row(index) for index in indices]}
 
     def _row(self, index: int) -> dict[str, Any]:
-        given = self._tables.zero.get(index, (0.0,) * len(self._axes))
         off = self._tables.inactive.get(index, frozenset())
-        values = dict(zip(self._axes, self.changes.values.get(index, given), strict=False))
         inactive = {self._axes[place] for place in self.changes.inactive.get(index, off)}
+        values = self._values(index)
         return {
             "index": index,
             "name": self._tables.names.get(index, code_of(index)),
-            "values": {name: values[name] * self._factors.get(name, 1.0) for name in self._shown_axes},
+            "values": {name: values[name] for name in self._shown_axes},
             "inactive": [name for name in self._shown_axes if name in inactive],
         }
+
+    def _values(self, index: int) -> dict[str, float]:
+        """As a machine file has them."""
+        if (changed := self.changes.values.get(index)) is not None:
+            return {name: value * self._factors.get(name, 1.0) for name, value in zip(self._axes, changed, strict=True)}
+        return dict(zip(self._axes, self._tables.zero.get(index, (0.0,) * len(self._axes)), strict=False))
 
 
 def is_whole(offsets: ChannelOffsets, axes: Sequence[str]) -> bool:
