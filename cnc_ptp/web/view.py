@@ -90,15 +90,13 @@ class View:
             self._tell_event(event, self.face.cycle_time)
         for request in news.requests:
             self._tell_request(request)
-        for channel, offsets in news.offsets:
-            self._tell_offsets(channel, offsets)
+        self._tell_offsets(news.offsets)
         for record in news.records:
             self._tell_answered(record, [*self._blocks, *news.blocks])
         for unit, block in news.blocks:
             if isinstance(block, ChannelBlock):
                 self._distances.take_block(unit, block)
-                for offsets in block.offsets:
-                    self._tell_offsets(unit, offsets)
+                self._tell_offsets([(unit, offsets) for offsets in block.offsets])
                 self._tell_done(self.handshakes.take_block(unit, block))
         self._blocks = news.blocks
         self._tell_tables()
@@ -186,9 +184,9 @@ class View:
         known = {"events": events, "alarms": self.alarms.list(), "offsets": self.offsets}
         self.to_all({"type": "past", **known, "nodes": [*past.diagnostics]})
 
-    def _tell_offsets(self, channel: str, offsets: ChannelOffsets) -> None:
-        """Of a block, or of their topic; once."""
-        if self._take_offsets(channel, offsets):
+    def _tell_offsets(self, told: Sequence[tuple[str, ChannelOffsets]]) -> None:
+        """Of a block, or of their topic: the newest of each channel, once."""
+        for channel in {channel for channel, offsets in told if self._take_offsets(channel, offsets)}:
             self.to_all({"type": "offsets", **self.offsets[channel]})
 
     def _tell_tables(self) -> None:

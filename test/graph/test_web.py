@@ -238,8 +238,10 @@ def test_a_server_that_begins_late_knows_what_was_before(ros_domain, machine, fo
         async with ClientSession(cookie_jar=CookieJar(unsafe=True)) as session:
             page = await open_page(session, port)
             await page.state_of("channel", lambda channel: channel.get("tool") == 2)
-            offsets = page.hello["offsets"].get("channel") or await page.wait_for("offsets")
-            assert (offsets["clamp_index"], offsets["clamp_offset"][0]) == (1, 1.5)
+            offsets = page.hello["offsets"].get("channel", {})
+            if offsets.get("clamp_index") != 1:
+                offsets = await page.wait_for("offsets", lambda offsets: offsets["clamp_index"] == 1)
+            assert offsets["clamp_offset"][0] == 1.5
             [alarm] = page.hello["alarms"] or [await page.wait_for("event", lambda event: event.get("alarm"))]
             assert (alarm["source"], alarm["acknowledged"]) == ("x", False)
             assert (await page.ask("acknowledge", alarm=alarm["alarm"]))["ok"]
