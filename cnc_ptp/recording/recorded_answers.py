@@ -21,7 +21,6 @@ from cnc_ptp.protocol.blocks import (
     json_of,
 )
 from cnc_ptp.recording.run_inputs import RunInputs
-from cnc_ptp.wire.block_codec import codec_of
 
 CHANNEL_BLOCK, SPINDLE_BLOCK = "cnc_ptp/msg/ChannelBlock", "cnc_ptp/msg/SpindleBlock"
 GEAR_CHANGED, COUPLING_ANSWER = "gear_changed", "coupling_answer"
@@ -48,6 +47,7 @@ class RecordedAnswers:
         self._begin = begin
         self._channels = recorded.messages([CHANNEL_BLOCK], begin)
         self._spindles = recorded.messages([SPINDLE_BLOCK], begin)
+        self._codec_of_channels, self._codec_of_spindles = recorded.codec(ChannelBlock), recorded.codec(SpindleBlock)
         self._channels_reached = self._spindles_reached = -1
         self._commands: Counter[Given] = Counter()
         """Those of the channels, which they give again."""
@@ -129,7 +129,7 @@ class RecordedAnswers:
         message = next(self._channels, None)
         if message is None:
             return False
-        block = codec_of(ChannelBlock).decode(message.cdr)
+        block = self._codec_of_channels.decode(message.cdr)
         self._channels_reached = block.first_cycle
         if block.first_cycle >= self._begin:
             self._note_requests(block)
@@ -142,7 +142,7 @@ class RecordedAnswers:
         message = next(self._spindles, None)
         if message is None:
             return False
-        block = codec_of(SpindleBlock).decode(message.cdr)
+        block = self._codec_of_spindles.decode(message.cdr)
         self._spindles_reached = block.first_cycle
         if block.first_cycle >= self._begin:
             self._note_gear(message.topic.removesuffix("/block").lstrip("/"), block)

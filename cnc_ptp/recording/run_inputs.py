@@ -28,6 +28,7 @@ from cnc_ptp.recording.origin import NOT_COMPUTABLE, WITHOUT, computable_from, n
 from cnc_ptp.recording.parts import files_of
 from cnc_ptp.recording.reader import COMMAND, STATE_TYPES, TICK, RawMessage, command_record
 from cnc_ptp.recording.writer import CHECKPOINT, CHECKPOINT_TEXT, MACHINE_FILE, PLC_FILE
+from cnc_ptp.wire.block_codec import BlockCodec, codec_of, codec_of_file
 from cnc_ptp.wire.schemas import full_name
 from cnc_ptp.wire.ticks import Tick, decode_tick
 
@@ -142,6 +143,12 @@ class RunInputs:
         from_ns = self.start_ns + first_cycle * self.cycle_time_ns
         return chain.from_iterable(part.messages(types, from_ns) for part in self._parts)
 
+    def codec(self, block_class: type) -> BlockCodec:
+        """For its blocks, which may be from before a change of their message. Raises CncError 26005."""
+        name = f"cnc_ptp/msg/{block_class.__name__}"
+        definition = next(filter(None, (part.definition(name) for part in self._parts)), None)
+        return codec_of(block_class) if definition is None else codec_of_file(block_class, definition)
+
     def close(self) -> None:
         for part in [*self._parts, *self._beside]:
             part.index.close()
@@ -206,6 +213,10 @@ class _Part:
         """Messages of some types in log-time order, from the chunks that may have those of `from_ns` or later."""
         wanted = {id: name for id in self.index.channels if (name := self._type_of(id)) in types}
         return self._in_order([chunk for chunk in self._chunks(wanted) if chunk.last_ns >= from_ns], wanted)
+
+    def definition(self, type_name: str) -> bytes | None:
+        """Of a type, where the file has one."""
+        return next((each.data for each in self.index.schemas.values() if full_name(each.name) == type_name), None)
 
     def commands(self) -> Iterator[CommandRecord]:
         schema = next((each for each in self.index.schemas.values() if full_name(each.name) == COMMAND), None)

@@ -31,7 +31,7 @@ from cnc_ptp.protocol.channel_states import ChannelStateCode
 from cnc_ptp.protocol.jobs import JobStatus
 from cnc_ptp.wire.form import Form
 from cnc_ptp.wire.layout import NOT_ENCODED, Layout, encode, header_at
-from cnc_ptp.wire.schemas import PRIMITIVES, decoder_of, load_schema
+from cnc_ptp.wire.schemas import PRIMITIVES, Schema, decoder_of, load_schema, recorded_schema
 from cnc_ptp.wire.stamps import Stamps
 from cnc_ptp.wire.unreadable import unreadable
 
@@ -109,13 +109,14 @@ BY_AXIS = "programmed_position"
 """The column that holds one value for each axis, of the last cycle."""
 
 
-CHANNEL_LISTS = tuple(field.name for field in load_schema("cnc_ptp/msg/ChannelOffsets").fields if field.length)
+CHANNEL_LISTS = {field.name for field in load_schema("cnc_ptp/msg/ChannelOffsets").fields if field.length}
 
 
 def channel_offsets(sent: Any) -> ChannelOffsets:
-    """Sequences become lists, as the channel has made them."""
-    values: dict[str, Any] = {name: getattr(sent, name) for name in ChannelOffsets.__dataclass_fields__}
-    for name in CHANNEL_LISTS:
+    """Sequences become lists, as the channel has made them; older files have fewer fields."""
+    names = [name for name in ChannelOffsets.__dataclass_fields__ if hasattr(sent, name)]
+    values: dict[str, Any] = {name: getattr(sent, name) for name in names}
+    for name in CHANNEL_LISTS & values.keys():
         values[name] = list(values[name])
     return ChannelOffsets(**values)
 
@@ -123,9 +124,10 @@ def channel_offsets(sent: Any) -> ChannelOffsets:
 class BlockCodec:
     """Encodes and decodes the blocks of one class."""
 
-    def __init__(self, block_class: Any) -> None:
+    def __init__(self, block_class: Any, schema: Schema | None = None) -> None:
+        """`schema`: that of a file; None for that of today."""
         self._class = block_class
-        self.schema = load_schema(f"cnc_ptp/msg/{block_class.__name__}")
+        self.schema = load_schema(f"cnc_ptp/msg/{block_class.__name__}") if schema is None else schema
         self._decode = decoder_of(self.schema)
         self._shape = _SHAPES[block_class]
         self._highest_state = _HIGHEST_STATE.get(block_class, 0)
@@ -296,6 +298,13 @@ def codec_of(block_class: type) -> BlockCodec:
     if codec is None:
         codec = _CODECS[block_class] = BlockCodec(block_class)
     return codec
+
+
+def codec_of_file(block_class: type, definition: bytes) -> BlockCodec:
+    """For the messages of a file, which may be from before a change of their definition. Raises CncError 26005."""
+    today = codec_of(block_class)
+    schema = recorded_schema(today.schema.name, definition)
+    return today if schema.types == today.schema.types else BlockCodec(block_class, schema)
 
 
 def encode_block(block: CycleBlock, stamps: Stamps) -> bytes:

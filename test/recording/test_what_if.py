@@ -31,7 +31,7 @@ from cnc_ptp.recording.run_difference import difference
 from cnc_ptp.recording.run_inputs import RunInputs
 from cnc_ptp.recording.trigger import Condition
 from cnc_ptp.recording.what_if import Change, WhatIf
-from cnc_ptp.wire.block_codec import codec_of
+from cnc_ptp.wire.block_codec import BlockCodec, codec_of
 from cnc_ptp.wire.stamps import Stamps
 
 SPINDLES = "examples/spindles/"
@@ -334,6 +334,9 @@ class OneBlock:
     def __init__(self, block: ChannelBlock, commands: list[CommandRecord]) -> None:
         data = codec_of(ChannelBlock).encode(block, Stamps(0, 1_000_000))
         self.commands, self._message = commands, RawMessage("/channel/block", CHANNEL_BLOCK, 0, data)
+
+    def codec(self, block_class: type) -> BlockCodec:
+        return codec_of(block_class)
 
     def messages(self, types: list[str], _first_cycle: int) -> Iterator[RawMessage]:
         return iter([self._message] if CHANNEL_BLOCK in types else [])

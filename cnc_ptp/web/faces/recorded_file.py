@@ -28,7 +28,7 @@ from cnc_ptp.recording.parts import files_of
 from cnc_ptp.web.faces.description import describe_units
 from cnc_ptp.web.faces.program_watch import load_of
 from cnc_ptp.web.faces.scope import HEAD, Samples, Signal
-from cnc_ptp.wire.block_codec import codec_of
+from cnc_ptp.wire.block_codec import BlockCodec, codec_of_file
 
 WINDOW = 1.0
 """Seconds of blocks that are read together …"""
@@ -147,14 +147,16 @@ class RecordedFile:
         begin = self._recording.start_ns + round(number * WINDOW / NS)
         end = begin + round(WINDOW / NS)
         topics = {f"/{unit}/block": unit for unit in self.kinds}
-        codecs = {unit: codec_of(BLOCK_CLASSES[kind]) for unit, kind in self.kinds.items()}
         window = Window({unit: [] for unit in self.kinds}, [])
         for file, decoders in zip(self._files, self._decoders, strict=True):
+            codecs: dict[str, BlockCodec] = {}
             file.seek(0)
             read = make_reader(file).iter_messages([*topics, DIAGNOSTICS], starting_at=begin, ending_before=end)
             for schema, channel, message in read:
-                if unit := topics.get(channel.topic):
+                if schema is not None and (unit := topics.get(channel.topic)):
                     with suppress(CncError):  # what no unit sends
+                        if unit not in codecs:
+                            codecs[unit] = codec_of_file(BLOCK_CLASSES[self.kinds[unit]], schema.data)
                         window.blocks[unit].append(codecs[unit].decode(message.data))
                 elif schema is not None and schema.name == DIAGNOSTICS_TYPE:
                     decode: Any = decoders.decoder_for("cdr", schema)
