@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable, Hashable
+from functools import lru_cache
 from typing import Any
 
 from cnc_ptp.errors import CncError
@@ -37,6 +38,8 @@ from cnc_ptp.wire.unreadable import unreadable
 
 HEAD = struct.Struct("<4xiIIx3xQI")
 """Encapsulation, stamp, length of the empty frame_id, first cycle, count: the start of every block."""
+FILES_KNOWN = 64
+"""Definitions of files that are kept."""
 FORMS_KEPT = 1000
 
 
@@ -300,6 +303,7 @@ def codec_of(block_class: type) -> BlockCodec:
     return codec
 
 
+@lru_cache(maxsize=FILES_KNOWN)
 def codec_of_file(block_class: type, definition: bytes) -> BlockCodec:
     """For the messages of a file, which may be from before a change of their definition. Raises CncError 26005."""
     today = codec_of(block_class)

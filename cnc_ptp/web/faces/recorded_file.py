@@ -28,7 +28,7 @@ from cnc_ptp.recording.parts import files_of
 from cnc_ptp.web.faces.description import describe_units
 from cnc_ptp.web.faces.program_watch import load_of
 from cnc_ptp.web.faces.scope import HEAD, Samples, Signal
-from cnc_ptp.wire.block_codec import BlockCodec, codec_of_file
+from cnc_ptp.wire.block_codec import codec_of_file
 
 WINDOW = 1.0
 """Seconds of blocks that are read together …"""
@@ -149,15 +149,13 @@ class RecordedFile:
         topics = {f"/{unit}/block": unit for unit in self.kinds}
         window = Window({unit: [] for unit in self.kinds}, [])
         for file, decoders in zip(self._files, self._decoders, strict=True):
-            codecs: dict[str, BlockCodec] = {}
             file.seek(0)
             read = make_reader(file).iter_messages([*topics, DIAGNOSTICS], starting_at=begin, ending_before=end)
             for schema, channel, message in read:
                 if schema is not None and (unit := topics.get(channel.topic)):
                     with suppress(CncError):  # what no unit sends
-                        if unit not in codecs:
-                            codecs[unit] = codec_of_file(BLOCK_CLASSES[self.kinds[unit]], schema.data)
-                        window.blocks[unit].append(codecs[unit].decode(message.data))
+                        codec = codec_of_file(BLOCK_CLASSES[self.kinds[unit]], schema.data)
+                        window.blocks[unit].append(codec.decode(message.data))
                 elif schema is not None and schema.name == DIAGNOSTICS_TYPE:
                     decode: Any = decoders.decoder_for("cdr", schema)
                     time = (message.log_time - self._recording.start_ns) * NS
@@ -184,7 +182,7 @@ class RecordedFile:
             names = [each.name for each in fields(ChannelOffsets) if each.name in topic.fields]
             columns = self._recording.columns(topic.name, *names)
             rows = zip(*(columns[name].tolist() for name in names), strict=True)
-            found += [(channel, ChannelOffsets(**dict(zip(names, map(plain, row), strict=True)))) for row in rows]
+            found += [(channel, ChannelOffsets(**dict(zip(names, map(as_list, row), strict=True)))) for row in rows]
         return sorted(found, key=lambda offsets: offsets[1].cycle)
 
     def _read_records(self) -> list[CommandRecord]:
@@ -207,8 +205,8 @@ class RecordedFile:
             file.close()
 
 
-def plain(value: Any) -> Any:
-    """Numbers of a sequence as a list, as a channel has them."""
+def as_list(value: Any) -> Any:
+    """A sequence of numbers as a channel has it; another value as it is."""
     return value.tolist() if isinstance(value, np.ndarray) else value
 
 

@@ -11,12 +11,12 @@ export function offsets(app) {
   const rows = NAMES.map((name, i) => row(app, i + 1, name, axes));
   const head = h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Offset"), axes.map((axis) => h("th", { scope: "col" }, axis)), h("th", { scope: "col" }, "Teach")));
   const table = h("table", { class: "offsets" }, head, h("tbody", {}, rows.map((one) => one.element)));
-  const [active, first] = [h("p", { class: "muted" }), h("p", { class: "muted" })];
-  const element = panel(store.ofChannel("Zero offsets"), active, first, h("fieldset", { class: "commands" }, h("div", { class: "scroll" }, table)));
+  const [active, atStart] = [h("p", { class: "muted" }), h("p", { class: "muted" })];
+  const element = panel(store.ofChannel("Zero offsets"), active, atStart, h("fieldset", { class: "commands" }, h("div", { class: "scroll" }, table)));
 
   const fill = (table) => {
     for (const { index, values, inactive } of table?.offsets || []) rows[index - 1]?.fill(values, inactive);
-    if (table) say(first, `Programs start with ${nameOf(table.default)}.`);
+    if (table) say(atStart, `Programs start with ${nameOf(table.default)}.`);
   };
   const update = () => {
     const now = store.offsets[store.channel];
