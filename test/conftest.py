@@ -106,6 +106,9 @@ def pytest_testnodedown(node: Any) -> None:
 def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
     for line in config.stash.get(MOTION, []):
         terminalreporter.write_line(line)
+    for report in terminalreporter.stats.get("rerun", []):
+        reason = getattr(report.longrepr, "reprcrash", report.longrepr)
+        terminalreporter.write_line(f"run again: {report.nodeid} ({report.when}): {reason}")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

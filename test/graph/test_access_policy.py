@@ -5,11 +5,10 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-import rclpy
-from graph_support import Running, one_axis_machine, small_machine
+from graph_support import LAST_WORDS, Running, one_axis_machine, small_machine
 from rclpy.node import Node
+from ros_support import ros
 
-from cnc_ptp.nodes import process
 from cnc_ptp.nodes.access_policy import CLIENT, ROSOUT, machine_access, policy_text
 from cnc_ptp.nodes.topics import DRIVE_STOPS, EVENT, MONITOR, RECORDER, block_topic
 from cnc_ptp.parameters import read_machine
@@ -76,18 +75,14 @@ def running(request, tmp_path):
     """A machine that runs, and somebody who looks at it."""
     make, options = request.param
     file = make(tmp_path)
-    run = Running(file, *options, "--stay", "--record", tmp_path / "run.mcap")
-    process.initialise()
-    looker = Looker()
-    try:
-        run.wait_until_recorded(tmp_path / "run.mcap", 1)
-        yield read_machine(file), looker, bool(options)
-    finally:
-        looker.destroy_node()
-        rclpy.try_shutdown()
-        run.process.terminate()
-        run.process.wait(60)
-        run.process.stdout.close()
+    with Running(file, *options, "--stay", "--record", tmp_path / "run.mcap") as graph:
+        with ros():
+            looker = Looker()
+            graph.wait_until_recorded(tmp_path / "run.mcap", 1)
+            yield read_machine(file), looker, bool(options)
+            looker.destroy_node()
+        graph.process.terminate()
+        graph.process.communicate(timeout=LAST_WORDS)
 
 
 def complete(looker, access):

@@ -110,15 +110,12 @@ def test_without_checkpoints_they_are_made_beside_the_recording(
 def test_recordings_on_demand_and_snapshots_have_those_of_their_time_and_one_before(tmp_path: Path) -> None:
     path, snapshot = tmp_path / "late.mcap", tmp_path / "snapshot.mcap"
     words = ("--program", program(tmp_path), "--keep", 5, "--checkpoints", 1, "--stay")
-    running = Running(MILL, *words)
-    try:
+    with Running(MILL, *words) as running:
         running.wait_for_nodes(8)
         run("do", "recorder", "start", path)
         running.wait_until_recorded(path, 300_000)
         run("do", "recorder", "snapshot", snapshot, "seconds=1.5")
         run("do", "recorder", "stop")
-    finally:
-        running.end()
     for file in (path, snapshot):
         begin, end = read_recording(file).states["/x/state"]["cycle"][[0, -1]]
         before, *others = checkpoints_of(file)

@@ -10,9 +10,8 @@ import sys
 import time
 
 import pytest
-import rclpy
 from action_msgs.msg import GoalStatus
-from client_support import Client
+from client_support import Client, connected
 from diagnostic_msgs.msg import DiagnosticArray
 from graph_support import MILL, Running, run, small_machine, verified, wait_for_handler
 from mcap.writer import MCAP0_MAGIC
@@ -21,7 +20,7 @@ from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters
 from sensor_msgs.msg import JointState
 
 from cnc_ptp import action, msg
-from cnc_ptp.nodes import convert, process
+from cnc_ptp.nodes import convert
 from cnc_ptp.nodes.topics import BLOCKS, DIAGNOSTICS, EVENTS, JOINT_STATES, LATEST, PLC_INPUT
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.axis_states import AxisStateCode
@@ -43,22 +42,16 @@ def recording(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def graph(ros_domain, machine, recording):
-    graph = Running(machine, "--duration", UNHEARD_DURATION, "--record", recording)
-    graph.wait_for_nodes(7)
-    yield graph
-    graph.end()
+    with Running(machine, "--duration", UNHEARD_DURATION, "--record", recording) as graph:
+        graph.wait_for_nodes(7)
+        yield graph
 
 
 @pytest.fixture(scope="module")
 def client(graph, machine):
-    process.initialise()
-    client = Client(read_machine(str(machine)))
-    client.start()
-    client.wait_blocks("x", 1)
-    yield client
-    client.destroy_node()
-    client.executor_of_test.shutdown()
-    rclpy.try_shutdown()
+    with connected(Client, machine) as client:
+        client.wait_blocks("x", 1)
+        yield client
 
 
 @pytest.fixture

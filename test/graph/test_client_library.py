@@ -361,16 +361,15 @@ def test_a_machine_that_ends_says_so_to_other_clients(ros_domain, folder):
 
 @pytest.mark.long
 def test_a_machine_that_falls_silent_is_gone(ros_domain, folder):
-    run = Running(one_axis_machine(folder), "--composed", "--stay", "--namespace", "silent")
-    try:
-        with Machine.connect(namespace="silent", timeout=60.0) as other:
-            run.process.kill()
-            assert refusal(lambda: other.run_for(60.0))[:2] == (
-                26171,
-                "nothing new for 5 s: the machine no longer runs; what it does is not known",
-            )
-    finally:
-        run.end()
+    with (
+        Running(one_axis_machine(folder), "--composed", "--stay", "--namespace", "silent") as run,
+        Machine.connect(namespace="silent", timeout=60.0) as other,
+    ):
+        run.process.kill()
+        assert refusal(lambda: other.run_for(60.0))[:2] == (
+            26171,
+            "nothing new for 5 s: the machine no longer runs; what it does is not known",
+        )
 
 
 def test_a_unit_that_says_nothing(m, monkeypatch):

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import rclpy
 from graph_support import MILL, PTP, Running, kill, one_axis_machine, verified, wait_until_gone
+from ros_support import ros
 from spin_support import spin_until
 
 from cnc_ptp import msg
@@ -37,7 +38,6 @@ class Bus:
     """A drive watch with units whose blocks a test writes."""
 
     def __init__(self, machine, *units):
-        process.initialise()
         self.node = PollingNode("clock", enable_rosout=False)
         self.outside = rclpy.create_node("outside", enable_rosout=False, start_parameter_services=False)
         self.watch = DriveWatch(self.node, read_machine(str(machine)))
@@ -93,14 +93,14 @@ class Bus:
         for node in (self.node, self.outside):
             node.destroy_node()
         self.executor.shutdown()
-        rclpy.try_shutdown()
 
 
 @pytest.fixture
 def bus(request):
-    bus = Bus(*request.param)
-    yield bus
-    bus.close()
+    with ros():
+        bus = Bus(*request.param)
+        yield bus
+        bus.close()
 
 
 @pytest.mark.parametrize("bus", [(PTP, "x", "y")], indirect=True)
@@ -248,13 +248,10 @@ def test_at_the_end_only_what_moves_is_waited_for(bus):
 @pytest.mark.parametrize("milliseconds", [1, 50, 200])
 def test_drives_are_looked_at_in_time_with_any_watchdog_time(milliseconds):
     """A clock that looks more seldom than half of the watchdog time takes itself for suspended each time."""
-    process.initialise()
-    try:
+    with ros():
         clock = ClockNode(replace(read_machine(str(PTP)), watchdog_ms=milliseconds))
         assert clock._turn <= 0.25e-3 * milliseconds
         clock.destroy_node()
-    finally:
-        rclpy.try_shutdown()
 
 
 def test_an_axis_whose_drive_has_stopped_ends():
@@ -288,11 +285,10 @@ def moving(tmp_path):
     """x on a long way at 50 mm/s, as processes."""
     (tmp_path / "move.yaml").write_text("- {at: 0.05, to: x, do: move_absolute, target: 3000, velocity: 50}\n")
     recording = tmp_path / "run.mcap"
-    graph = Running(one_axis_machine(tmp_path), "--scenario", tmp_path / "move.yaml", "--record", recording)
-    nodes = dict(graph.wait_for_nodes(4))
-    graph.wait_until_recorded(recording, 30_000)
-    yield graph, nodes, recording
-    graph.end()
+    with Running(one_axis_machine(tmp_path), "--scenario", tmp_path / "move.yaml", "--record", recording) as graph:
+        nodes = dict(graph.wait_for_nodes(4))
+        graph.wait_until_recorded(recording, 30_000)
+        yield graph, nodes, recording
 
 
 def check_braked(recorded):
@@ -364,22 +360,16 @@ def test_the_drives_brake_when_the_supervisor_is_killed(moving):
 
 def test_one_process_has_no_watch():
     """There drives end together with everything that could tell of them."""
-    process.initialise()
-    try:
+    with ros():
         clock = ClockNode(read_machine(str(PTP)), handover=Handover())
         assert f"/{DRIVE_STOPS}" not in [publisher.topic_name for publisher in clock.publishers]
         assert clock.end_settled()
         clock.destroy_node()
-    finally:
-        rclpy.try_shutdown()
 
 
 def test_nobody_is_woken_by_the_blocks_that_the_clock_keeps():
-    process.initialise()
-    try:
+    with ros():
         clock = ClockNode(read_machine(str(PTP)))
         waking = {subscription.topic_name for subscription in clock.subscriptions}
         assert waking.isdisjoint({"/x/block", "/y/block", "/z/block", "/c/block", "/plc/block"})
         clock.destroy_node()
-    finally:
-        rclpy.try_shutdown()

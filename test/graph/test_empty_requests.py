@@ -1,13 +1,12 @@
 """`ros2 service call … '{}'`: what is left out moves nothing and releases nothing."""
 
 import pytest
-import rclpy
 from graph_support import MILL, PTP
 from rclpy.serialization import serialize_message
+from ros_support import ros
 
 from cnc_ptp import action, msg, srv
 from cnc_ptp.machine.wiring import build_unit
-from cnc_ptp.nodes import process
 from cnc_ptp.nodes.bridge.function_blocks import given_inputs
 from cnc_ptp.nodes.plc_bridge import PlcBridgeNode
 from cnc_ptp.nodes.topics import COUPLING_SERVICES, HLI_CONTROL, SERVICES
@@ -168,12 +167,11 @@ def test_an_empty_message_is_not_valid(message):
 
 @pytest.fixture(scope="module")
 def bridge():
-    process.initialise()
-    node = PlcBridgeNode(read_machine(MILL))
-    node.setup()
-    yield node
-    node.destroy_node()
-    rclpy.try_shutdown()
+    with ros():
+        node = PlcBridgeNode(read_machine(MILL))
+        node.setup()
+        yield node
+        node.destroy_node()
 
 
 @pytest.mark.parametrize(

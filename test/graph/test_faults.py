@@ -5,7 +5,6 @@ from functools import partial
 from types import SimpleNamespace
 
 import pytest
-import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from graph_support import MILL, PTP, run
 from long_support import long
@@ -14,6 +13,7 @@ from rcl_interfaces.srv import SetParameters, SetParametersAtomically
 from rclpy.node import Node
 from rclpy.qos import qos_profile_rosout_default
 from recording_support import Blocks
+from ros_support import ros
 from spin_support import spin_until
 
 from cnc_ptp import msg
@@ -73,21 +73,20 @@ class Outside(Node):
 @pytest.fixture
 def around():
     """Makes a node beside `outside`; gives both, and a function that spins them until something holds."""
-    process.initialise()
-    executor = process.EventsExecutor()
-    nodes = [Outside()]
+    with ros():
+        executor = process.EventsExecutor()
+        nodes = [Outside()]
 
-    def start(make):
-        nodes.append(make())
+        def start(make):
+            nodes.append(make())
+            for node in nodes:
+                executor.add_node(node)
+            return (*nodes, partial(spin_until, executor))
+
+        yield start
         for node in nodes:
-            executor.add_node(node)
-        return (*nodes, partial(spin_until, executor))
-
-    yield start
-    for node in nodes:
-        node.destroy_node()
-    executor.shutdown()
-    rclpy.try_shutdown()
+            node.destroy_node()
+        executor.shutdown()
 
 
 def test_a_second_clock_starts_nothing(around):

@@ -4,9 +4,9 @@ import time
 
 import numpy as np
 import pytest
-import rclpy
 from graph_support import PTP
 from rclpy.node import Node
+from ros_support import ros
 from spin_support import spin_until
 
 from cnc_ptp import msg
@@ -50,7 +50,6 @@ class Surroundings(Node):
 
 class Bench:
     def __init__(self):
-        process.initialise()
         self.outside = Surroundings()
         self.axis = AxisNode(read_machine(str(PTP)), "x")
         self.axis.setup()
@@ -78,14 +77,14 @@ class Bench:
         for node in (self.axis, self.outside):
             node.destroy_node()
         self.executor.shutdown()
-        rclpy.try_shutdown()
 
 
 @pytest.fixture
 def bench():
-    bench = Bench()
-    yield bench
-    bench.close()
+    with ros():
+        bench = Bench()
+        yield bench
+        bench.close()
 
 
 def check_smooth(outside):

@@ -1,10 +1,10 @@
 """Blocks between nodes of one process, the pace of a free run, subscriptions that wake nobody."""
 
 import pytest
-import rclpy
 from graph_support import small_machine
 from rclpy.node import Node
 from rclpy.serialization import deserialize_message
+from ros_support import ros
 
 from cnc_ptp import msg
 from cnc_ptp.machine.wiring import unit_kinds
@@ -65,8 +65,7 @@ def test_a_unit_without_its_first_block_holds_up_the_run():
 
 def test_a_late_composed_run_gives_the_executor_a_turn_after_each_tick(tmp_path):
     """A tick computes the whole machine there: timers, services and signals must not wait until the run is in time."""
-    process.initialise()
-    try:
+    with ros():
         machine = read_machine(str(small_machine(tmp_path)))
         handover, ticks = Handover(), []
         handover.on_tick(lambda tick: ticks.append(tick.first_cycle), lambda: None)
@@ -79,8 +78,6 @@ def test_a_late_composed_run_gives_the_executor_a_turn_after_each_tick(tmp_path)
             clock.advance()
             assert len(ticks) == turn and clock.wait_time() == 0.0
         clock.destroy_node()
-    finally:
-        rclpy.try_shutdown()
 
 
 def test_an_error_of_one_node_does_not_stop_the_others():
@@ -143,8 +140,7 @@ def test_a_free_run_goes_on_without_those_who_are_silent(monkeypatch):
 
 
 def test_messages_are_taken_in_their_order_when_the_node_looks():
-    process.initialise()
-    try:
+    with ros():
         writer, reader, seen = Node("writer", enable_rosout=False), PollingNode("reader", enable_rosout=False), []
         publisher = writer.create_publisher(msg.BlockReport, "polled", BLOCKS)
         polled = reader.poll(msg.BlockReport, "polled", seen.append, BLOCKS)
@@ -163,5 +159,3 @@ def test_messages_are_taken_in_their_order_when_the_node_looks():
         read = [deserialize_message(data, msg.BlockReport).first_cycle for data in seen]
         assert read == list(range(5))
         executor.shutdown()
-    finally:
-        rclpy.try_shutdown()

@@ -9,13 +9,12 @@ from pathlib import Path
 
 import pytest
 import rclpy
-from client_support import Blocks, Client
+from client_support import Blocks, Client, connected
 from graph_support import Running, small_machine, verified
 from std_msgs.msg import Bool, Header
 from std_srvs.srv import Trigger
 
 from cnc_ptp import msg
-from cnc_ptp.nodes import process
 from cnc_ptp.nodes.topics import HLI_CONTROL, HLI_STATUS, LATEST, PLC_INPUT
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.axis_states import AxisStateCode
@@ -78,22 +77,16 @@ def recording(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def graph(ros_domain, machine, recording):
-    graph = Running(machine, "--duration", UNHEARD_DURATION, "--record", recording)
-    graph.wait_for_nodes(7)
-    yield graph
-    graph.end()
+    with Running(machine, "--duration", UNHEARD_DURATION, "--record", recording) as graph:
+        graph.wait_for_nodes(7)
+        yield graph
 
 
 @pytest.fixture(scope="module")
 def plc(graph, machine):
-    process.initialise()
-    client = PlcClient(read_machine(str(machine)))
-    client.start()
-    client.wait_blocks("x", 1)
-    yield client
-    client.destroy_node()
-    client.executor_of_test.shutdown()
-    rclpy.try_shutdown()
+    with connected(PlcClient, machine) as client:
+        client.wait_blocks("x", 1)
+        yield client
 
 
 def test_the_status_counts_blocks_and_shows_both_units(plc):

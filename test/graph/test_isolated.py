@@ -46,12 +46,9 @@ def isolated(folder):
     port, recording = unused_port(), folder / "isolated.mcap"
     recording.unlink(missing_ok=True)
     options = ("--isolated", "--stay", "--web", port, "--record", recording)
-    running = Running(folder / "one.yaml", *options)
-    try:
+    with Running(folder / "one.yaml", *options) as running:
         wait_for_pages(running)
         yield running, port, recording
-    finally:
-        running.end()
 
 
 def wait_for_pages(running):
@@ -234,13 +231,11 @@ def test_users_of_the_pages_are_read_before_anything_is_started(folder):
 
 def test_commands_and_their_own_ros_arguments(folder):
     recording = folder / "entered.mcap"
-    running = Running(folder / "one.yaml", "--isolated", "--composed", "--stay", "--record", recording)
-    try:
+    with Running(folder / "one.yaml", "--isolated", "--composed", "--stay", "--record", recording) as running:
         running.wait_until_recorded(recording, 1)
         done = run("enter", "no_such_command", expect=2)
         assert "Error: no_such_command cannot be run: No such file or directory.\n" in done.stderr
         shows = run("enter", sys.executable, "-c", "import sys; print(sys.argv[1:])", "-v", "--ros-args", "--unknown")
         assert shows.stdout == "['-v', '--ros-args', '--unknown']\n"
-    finally:
         running.process.send_signal(signal.SIGINT)
         running.finish(0)

@@ -41,11 +41,10 @@ UNDER_WAY = 150_000  # bytes of recording: about a second
 def running(tmp_path):
     (tmp_path / "long.nc").write_text(LONG_PROGRAM.replace(" Z-20", "").replace("N40 Z0\n", ""))
     recording = tmp_path / "run.mcap"
-    graph = Running(small_machine(tmp_path), "--program", tmp_path / "long.nc", "--record", recording)
-    nodes = graph.wait_for_nodes(7)
-    graph.wait_until_recorded(recording, UNDER_WAY)
-    yield graph, dict(nodes), recording
-    graph.end()
+    with Running(small_machine(tmp_path), "--program", tmp_path / "long.nc", "--record", recording) as graph:
+        nodes = graph.wait_for_nodes(7)
+        graph.wait_until_recorded(recording, UNDER_WAY)
+        yield graph, dict(nodes), recording
 
 
 @pytest.mark.parametrize("node", NODES)
@@ -78,14 +77,11 @@ def test_killed_node_while_it_taps(tmp_path, node):
     """Spindle and axis come to rest; without their channel in step, as their events say."""
     (tmp_path / "tap.nc").write_text("G63 Z-100 F500 S400\nM30\n")
     recording = tmp_path / "run.mcap"
-    graph = Running(MILL, "--program", tmp_path / "tap.nc", "--record", recording)
-    try:
+    with Running(MILL, "--program", tmp_path / "tap.nc", "--record", recording) as graph:
         nodes = dict(graph.wait_for_nodes(8))
         graph.wait_until_recorded(recording, 2 * UNDER_WAY)
         kill(nodes[node])
         output = graph.finish(expect=1)
-    finally:
-        graph.end()
     assert f"P-ERR-26104 node '{node}' (process {nodes[node]}) was ended by SIGKILL" in output
     recorded = verified(recording, whole=False)
     check_ramps(recorded, skip=node, ended=True, axes=("x", "y", "z"))
@@ -127,14 +123,11 @@ def test_killed_node_while_it_cuts_a_thread(tmp_path, node):
     """The tool leaves the groove by X in step with the spindle, or the path stops in it, as the event says."""
     (tmp_path / "thread.nc").write_text("G18 G90 M03 S400\nG00 X36 Z300\nG33 Z20 K1.5\nM30\n")
     recording = tmp_path / "run.mcap"
-    graph = Running(LATHE, "--program", tmp_path / "thread.nc", "--record", recording)
-    try:
+    with Running(LATHE, "--program", tmp_path / "thread.nc", "--record", recording) as graph:
         nodes = dict(graph.wait_for_nodes(8))
         graph.wait_until_recorded(recording, 4 * UNDER_WAY)
         kill(nodes[node])
         output = graph.finish(expect=1)
-    finally:
-        graph.end()
     assert f"P-ERR-26104 node '{node}' (process {nodes[node]}) was ended by SIGKILL" in output
     assert f"P-ERR-26101 {THREAD_BREAKS_OFF[node]}" in output
     assert wait_until_gone(nodes.values()) == []
@@ -178,8 +171,7 @@ def test_killed_node_in_a_free_run_that_is_recorded(tmp_path, node):
     (tmp_path / "long.nc").write_text(LONG_PROGRAM.replace(" Z-20", "").replace("N40 Z0\n", ""))
     recording = tmp_path / "run.mcap"
     options = ("--program", tmp_path / "long.nc", "--record", recording, "--free-run")
-    graph = Running(small_machine(tmp_path), *options)
-    try:
+    with Running(small_machine(tmp_path), *options) as graph:
         nodes = dict(graph.wait_for_nodes(7))
         graph.wait_until_recorded(recording, UNDER_WAY)
         kill(nodes[node])
@@ -189,8 +181,6 @@ def test_killed_node_in_a_free_run_that_is_recorded(tmp_path, node):
         recorded = verified(recording, whole=False)
         if node != "recorder":
             assert recorded.states["/y/state"]["set_velocity"][-1] == 0.0
-    finally:
-        graph.end()
 
 
 def check_every_reader_opens(recording):
@@ -258,10 +248,10 @@ def test_killed_supervisor_leaves_no_orphan(running):
 
 
 def test_interrupt_while_the_nodes_start(tmp_path):
-    graph = Running(one_axis_machine(tmp_path), "--record", tmp_path / "run.mcap")
-    nodes = graph.wait_for_nodes(4)
-    graph.process.send_signal(signal.SIGTERM)
-    output = graph.finish(expect=1)
+    with Running(one_axis_machine(tmp_path), "--record", tmp_path / "run.mcap") as graph:
+        nodes = graph.wait_for_nodes(4)
+        graph.process.send_signal(signal.SIGTERM)
+        output = graph.finish(expect=1)
     assert "P-ERR-26106 the run was interrupted (SIGTERM); nothing has moved yet" in output
     assert "KeyboardInterrupt" not in output
     assert wait_until_gone(nodes.values()) == []
@@ -269,10 +259,10 @@ def test_interrupt_while_the_nodes_start(tmp_path):
 
 
 def test_killed_node_while_the_nodes_start(tmp_path):
-    graph = Running(one_axis_machine(tmp_path), "--record", tmp_path / "run.mcap")
-    nodes = dict(graph.wait_for_nodes(4))
-    kill(nodes["x"])
-    output = graph.finish(expect=1)
+    with Running(one_axis_machine(tmp_path), "--record", tmp_path / "run.mcap") as graph:
+        nodes = dict(graph.wait_for_nodes(4))
+        kill(nodes["x"])
+        output = graph.finish(expect=1)
     text = f"P-ERR-26104 node 'x' (process {nodes['x']}) was ended by SIGKILL during the run; nothing has moved yet"
     assert text in output
     assert wait_until_gone(nodes.values()) == []

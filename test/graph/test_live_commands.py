@@ -6,13 +6,9 @@ import subprocess
 import time
 
 import pytest
-import rclpy
-from client_support import Client
+from client_support import Client, connected
 from graph_support import Running, command, small_machine, verified
 from live_support import call, wait_for_machine
-
-from cnc_ptp.nodes import process
-from cnc_ptp.parameters import read_machine
 
 
 @pytest.fixture(scope="module")
@@ -23,8 +19,7 @@ def folder(tmp_path_factory):
 @pytest.fixture(scope="module")
 def machine(folder):
     """A standing mill without Z, all nodes in one process, recorded; its end is checked too."""
-    graph = Running(small_machine(folder), "--stay", "--composed", "--record", folder / "live.mcap")
-    try:
+    with Running(small_machine(folder), "--stay", "--composed", "--record", folder / "live.mcap") as graph:
         wait_for_machine()
         yield graph
         graph.process.send_signal(signal.SIGINT)
@@ -32,8 +27,6 @@ def machine(folder):
         assert "the machine was ended (SIGINT) with all units at a standstill" in output
         assert "failed" not in output and "stop without effect" not in output
         verified(folder / "live.mcap")
-    finally:
-        graph.end()
 
 
 def place(unit):
@@ -187,10 +180,12 @@ def is_ignored_beside_a_jog() -> bool:
 def test_an_axis_halts_on_its_ramp_when_the_client_is_gone(machine, number, folder):
     """Killed, or stalled, which no one but the watcher of the messages could notice."""
     path = folder / "small.yaml"
-    process.initialise()
-    client = Client(read_machine(path))
-    client.start()
-    client.wait_blocks("plc", 3)
+    with connected(Client, path) as client:
+        client.wait_blocks("plc", 3)
+        watch_a_jog_end(client, number)
+
+
+def watch_a_jog_end(client, number):
     jog = subprocess.Popen(command("jog", "y", "+", "--speed", "20"), stdout=subprocess.DEVNULL)
     try:
         client.wait_last("y", lambda block: block.set_velocity[-1] == pytest.approx(20.0), "the jog")
@@ -214,5 +209,3 @@ def test_an_axis_halts_on_its_ramp_when_the_client_is_gone(machine, number, fold
     finally:
         jog.kill()
         jog.wait()
-        client.destroy_node()
-        rclpy.try_shutdown()

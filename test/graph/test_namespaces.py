@@ -4,9 +4,9 @@ import subprocess
 import time
 
 import pytest
-import rclpy
-from graph_support import Running, command, one_axis_machine, run, states_equal, verified
+from graph_support import LAST_WORDS, Running, command, one_axis_machine, run, states_equal, verified
 from rclpy.node import Node
+from ros_support import ros
 
 from cnc_ptp import msg, srv
 from cnc_ptp.nodes import process
@@ -59,17 +59,16 @@ class InNamespace(Node):
 
 @pytest.fixture
 def client():
-    process.initialise()
     nodes = []
 
     def make(namespace):
         nodes.append(InNamespace(namespace))
         return nodes[-1]
 
-    yield make
-    for node in nodes:
-        node.destroy_node()
-    rclpy.try_shutdown()
+    with ros():
+        yield make
+        for node in nodes:
+            node.destroy_node()
 
 
 def finished(folder, name, graph):
@@ -87,34 +86,29 @@ def finished(folder, name, graph):
 
 
 def test_two_machines_in_one_process_each(folder):
-    left = Running(*job(folder, "left"), "--composed", "--record", folder / "left.mcap", "--namespace", "left")
-    right = Running(
-        *job(folder, "right"), "--composed", "--record", folder / "right.mcap", "--ros-args", "-r", "__ns:=/plant/right"
-    )
-    try:
+    remapped = ("--ros-args", "-r", "__ns:=/plant/right")
+    with (
+        Running(*job(folder, "left"), "--composed", "--record", folder / "left.mcap", "--namespace", "left") as left,
+        Running(*job(folder, "right"), "--composed", "--record", folder / "right.mcap", *remapped) as right,
+    ):
         assert "refused: P-ERR-" in finished(folder, "left", left)
         assert "refused: P-ERR-" not in finished(folder, "right", right)
-    finally:
-        left.end()
-        right.end()
 
 
 def test_processes_in_a_namespace_beside_a_machine_without(folder):
     """They begin at about the same time and find their own readers, not those of the other machine."""
-    left = Running(*job(folder, "left"), "--record", folder / "left.mcap", "--namespace", "/left/")
-    right = Running(*job(folder, "right"), "--composed", "--record", folder / "right.mcap")
-    try:
+    with (
+        Running(*job(folder, "left"), "--record", folder / "left.mcap", "--namespace", "/left/") as left,
+        Running(*job(folder, "right"), "--composed", "--record", folder / "right.mcap") as right,
+    ):
         finished(folder, "left", left)
         finished(folder, "right", right)
-    finally:
-        left.end()
-        right.end()
 
 
 def test_a_client_in_the_namespace(folder, client, ros_domain):
     """Topics and services are relative; a second run is refused in the same namespace only."""
-    graph = Running(folder / "one.yaml", "--duration", "600", "--composed", "--ros-args", "-r", "__ns:=/cell")
-    try:
+    remapped = ("--ros-args", "-r", "__ns:=/cell")
+    with Running(folder / "one.yaml", "--duration", "600", "--composed", *remapped) as graph:
         inside, outside = client("/cell"), client("/other")
         inside.spin_until(lambda: inside.blocks)
         mover = inside.create_client(srv.MoveAbsolute, "x/move_absolute")
@@ -144,10 +138,8 @@ def test_a_client_in_the_namespace(folder, client, ros_domain):
             f"P-ERR-26107 a run is under way on ROS domain {ros_domain} in namespace /cell of this machine; nothing was "
             "started. Wait for its end, choose another --namespace, or set ROS_DOMAIN_ID to another number\n"
         )
-    finally:
         graph.process.terminate()
-        graph.process.wait(timeout=20.0)
-        graph.process.stdout.close()
+        graph.process.communicate(timeout=LAST_WORDS)
 
 
 def test_a_reader_of_the_same_name_elsewhere_is_none_of_ours(client):

@@ -5,15 +5,15 @@ from contextlib import nullcontext
 
 import numpy as np
 import pytest
-import rclpy
 from graph_support import MILL, run
 from live_support import call
+from ros_support import ros
 
 from cnc_ptp import msg
 from cnc_ptp.client.graph_link import GraphLink
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.wiring import build_units
-from cnc_ptp.nodes import player, process
+from cnc_ptp.nodes import player
 from cnc_ptp.nodes.bridge.coupling_services import PATIENCE as COUPLING_PATIENCE
 from cnc_ptp.nodes.client.latest_blocks import LatestBlocks
 from cnc_ptp.nodes.client.machine_client import PATIENCE, MachineClient, services_of
@@ -33,17 +33,16 @@ def patient_clients():
 @pytest.fixture
 def client(monkeypatch):
     """It knows a machine that says nothing."""
-    process.initialise()
-    client = MachineClient()
-    client.kinds = {"x": "axis", "plc": "plc"}
-    monkeypatch.setattr(client, "_answer", lambda *_: None)
-    for command in ("do", "jog", "status"):
-        monkeypatch.setattr(f"cnc_ptp.commands.client.{command}.connected", lambda: nullcontext(client))
     for command in ("jog", "status"):
         monkeypatch.setattr(f"cnc_ptp.commands.client.{command}.PATIENCE", 0.2)
-    yield client
-    client.end()
-    rclpy.try_shutdown()
+    with ros():
+        client = MachineClient()
+        client.kinds = {"x": "axis", "plc": "plc"}
+        monkeypatch.setattr(client, "_answer", lambda *_: None)
+        for command in ("do", "jog", "status"):
+            monkeypatch.setattr(f"cnc_ptp.commands.client.{command}.connected", lambda: nullcontext(client))
+        yield client
+        client.end()
 
 
 @pytest.mark.parametrize(

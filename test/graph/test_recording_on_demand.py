@@ -4,10 +4,10 @@ import pytest
 import rclpy
 from graph_support import PTP, Running, kill, run, states_equal, verified
 from long_support import long
+from ros_support import ros
 from rosbags.rosbag2 import Reader
 
 from cnc_ptp.client import CncError, Machine, RecorderOptions
-from cnc_ptp.nodes import process
 from cnc_ptp.nodes.topics import RECORDER_SERVICES
 from cnc_ptp.recording.reader import read_recording
 
@@ -21,7 +21,6 @@ class Asker:
     """Services of the recorder from outside."""
 
     def __init__(self):
-        process.initialise()
         self.node = rclpy.create_node("asker", enable_rosout=False, start_parameter_services=False)
         self.clients = {
             name: self.node.create_client(kind, f"/recorder/{name}") for name, kind in RECORDER_SERVICES.items()
@@ -37,16 +36,13 @@ class Asker:
     def wait(self, seconds):
         rclpy.spin_until_future_complete(self.node, rclpy.task.Future(), timeout_sec=seconds)
 
-    def close(self):
-        self.node.destroy_node()
-        rclpy.try_shutdown()
-
 
 @pytest.fixture
 def asker():
-    asker = Asker()
-    yield asker
-    asker.close()
+    with ros():
+        asker = Asker()
+        yield asker
+        asker.node.destroy_node()
 
 
 def full_blocks(path):
@@ -63,8 +59,7 @@ def full_blocks(path):
 def test_recordings_of_a_running_graph_can_be_computed_again(tmp_path, asker, options):
     scenario = tmp_path / "story.yaml"
     scenario.write_text(SCENARIO)
-    graph = Running(PTP, "--scenario", scenario, "--duration", "12", "--keep", "2", *options)
-    try:
+    with Running(PTP, "--scenario", scenario, "--duration", "12", "--keep", "2", *options) as graph:
         first, snapshot, late = (str(tmp_path / f"{name}.mcap") for name in ("first", "snapshot", "late"))
         while not (started := asker.ask("start", file=first)).accepted:
             assert started.error_id == 26196, started.message
@@ -86,14 +81,11 @@ def test_recordings_of_a_running_graph_can_be_computed_again(tmp_path, asker, op
         assert asker.ask("start", file=late).accepted
         graph.finish(expect=0)  # a recording that nobody stops is closed with the run
         assert full_blocks(late)[1] == 11999
-    finally:
-        graph.end()
 
 
 @pytest.mark.long
 def test_commands_of_the_command_line(tmp_path):
-    graph = Running(PTP, "--duration", "60", "--keep", "3")
-    try:
+    with Running(PTP, "--duration", "60", "--keep", "3") as graph:
         graph.wait_for_nodes(5)
         files = [tmp_path / f"{name}.mcap" for name in "ab"]
         assert f"recorder: start: {files[0]} begins with cycle " in run("do", "recorder", "start", files[0]).stdout
@@ -109,14 +101,11 @@ def test_commands_of_the_command_line(tmp_path):
         )
         for file in files:
             full_blocks(file)
-    finally:
-        graph.end()
 
 
 @pytest.mark.parametrize("options", [*long([[]]), ["--split", "1s"]], ids=["file", "parts"])
 def test_a_killed_recorder_leaves_a_recording_that_every_reader_opens(tmp_path, options):
-    graph = Running(PTP, "--stay", "--recorder", *options)
-    try:
+    with Running(PTP, "--stay", "--recorder", *options) as graph:
         nodes = graph.wait_for_nodes(5)
         path = tmp_path / ("parts" if options else "a.mcap")
         run("do", "recorder", "start", path)
@@ -125,8 +114,6 @@ def test_a_killed_recorder_leaves_a_recording_that_every_reader_opens(tmp_path, 
         kill(nodes["recorder"])
         output = graph.finish(expect=1)
         assert "P-ERR-26104 node 'recorder' " in output
-    finally:
-        graph.end()
     recorded = verified(path, whole=False)
     assert not recorded.complete and "without having been closed" in recorded.missing
     with Reader(path if options else path.parent) as bag:
@@ -156,14 +143,11 @@ def test_the_client_of_a_graph_records(tmp_path, monkeypatch):
 
 @pytest.mark.long
 def test_without_a_recorder(tmp_path):
-    graph = Running(PTP, "--duration", "60")
-    try:
+    with Running(PTP, "--duration", "60") as graph:
         graph.wait_for_nodes(4)
         assert run("do", "recorder", "stop", expect=1).stderr == (
             "P-ERR-26136 recorder: stop: no answer; `cnc_ptp run` has a recorder with --record, --recorder or --keep\n"
         )
-    finally:
-        graph.end()
 
 
 def test_an_error_leaves_a_snapshot(tmp_path):

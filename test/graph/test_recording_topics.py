@@ -6,12 +6,12 @@ import sys
 import time
 
 import pytest
-import rclpy
-from client_support import Client
+from client_support import Client, connected
 from graph_support import MILL, SHORT_PROGRAM, Running, command, one_axis_machine, run, verified
 from rclpy.node import Node
 from rclpy.qos import QoSDurabilityPolicy, qos_profile_rosout_default
 from rclpy.serialization import deserialize_message
+from ros_support import ros
 
 from cnc_ptp import msg
 from cnc_ptp.nodes import player, process
@@ -28,21 +28,17 @@ def recording(tmp_path_factory):
     folder = tmp_path_factory.mktemp("topics")
     machine = one_axis_machine(folder)
     path = folder / "run.mcap"
-    graph = Running(machine, "--duration", "600", "--record", path)
-    process.initialise()
-    client = Client(read_machine(machine))
-    client.start()
-    client.wait_blocks("plc", 3)
     both = 2  # plc and recorder
-    client.write("/x/override", msg.Override, readers=both, percent=70.0, valid=True, sequence=1)
-    client.write("/x/jog", msg.Jog, readers=both, velocity=0.0, valid=True)
-    for counter in range(3):
-        client.write("/plc/life_sign", msg.LifeSign, readers=both, counter=counter)
-    client.wait_blocks("plc", 20)
-    client.destroy_node()
-    rclpy.try_shutdown()
-    graph.process.terminate()
-    graph.finish(expect=1)
+    with Running(machine, "--duration", "600", "--record", path) as graph:
+        with connected(Client, machine) as client:
+            client.wait_blocks("plc", 3)
+            client.write("/x/override", msg.Override, readers=both, percent=70.0, valid=True, sequence=1)
+            client.write("/x/jog", msg.Jog, readers=both, velocity=0.0, valid=True)
+            for counter in range(3):
+                client.write("/plc/life_sign", msg.LifeSign, readers=both, counter=counter)
+            client.wait_blocks("plc", 20)
+        graph.process.terminate()
+        graph.finish(expect=1)
     return path
 
 
@@ -102,25 +98,23 @@ def published(recording):
 
 
 def publish(recording):
-    process.initialise()
-    node = Node("test_reader", enable_rosout=False)
-    heard = []
-    node.create_subscription(msg.Override, "/x/override", heard.append, PLC_INPUT)
-    executor = process.EventsExecutor()
-    executor.add_node(node)
+    heard, offered = [], {}
     publishing = subprocess.Popen(
         command("replay", recording, "--publish", "--inputs", "--rate", "0.5"),
         stdout=subprocess.PIPE,
         text=True,
     )
-    offered = {}
-    while publishing.poll() is None:
-        executor.spin_once(timeout_sec=0.05)
-        for topic in ("/x/block", "/events", "/x/override", "/x/state"):
-            for info in node.get_publishers_info_by_topic(topic):
-                offered[topic] = info.qos_profile.durability
-    node.destroy_node()
-    rclpy.try_shutdown()
+    with ros():
+        node = Node("test_reader", enable_rosout=False)
+        node.create_subscription(msg.Override, "/x/override", heard.append, PLC_INPUT)
+        executor = process.EventsExecutor()
+        executor.add_node(node)
+        while publishing.poll() is None:
+            executor.spin_once(timeout_sec=0.05)
+            for topic in ("/x/block", "/events", "/x/override", "/x/state"):
+                for info in node.get_publishers_info_by_topic(topic):
+                    offered[topic] = info.qos_profile.durability
+        node.destroy_node()
     return publishing.stdout.read(), offered, [message.percent for message in heard]
 
 
@@ -142,15 +136,12 @@ def test_replay_publishes_with_the_recorded_quality_and_says_so(recording, publi
 
 def test_plc_inputs_are_left_out_unless_asked_for(recording):
     written = {"/x/jog", "/x/override", "/plc/life_sign"}
-    process.initialise()
-    try:
+    with ros():
         for inputs in (False, True):
             node = player.PlayerNode(str(recording), rate=1.0, inputs=inputs)
             assert written.isdisjoint(publisher.topic_name for publisher in node.publishers) is not inputs
             assert set(node.inputs_left_out) == (set() if inputs else written)
             node.destroy_node()
-    finally:
-        rclpy.try_shutdown()
 
 
 def test_interrupted_replay_says_how_far_it_came(recording):

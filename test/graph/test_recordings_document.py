@@ -19,12 +19,9 @@ def test_recording_on_demand(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     command = shlex.split(first)
     assert command[:2] == ["cnc_ptp", "run"]
-    graph = Running(*command[2:])
-    try:
+    with Running(*command[2:]) as graph:
         graph.wait_for_nodes(7)
         for line in then.splitlines():
             run(*shlex.split(line)[1:])
-    finally:
-        graph.end()
     for name in ("a.mcap", "b.mcap"):
         assert read_stored(tmp_path / name).complete

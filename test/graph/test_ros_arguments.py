@@ -5,16 +5,16 @@ from pathlib import Path
 
 import click
 import pytest
-import rclpy
 import yaml
 from graph_support import MILL, PTP, ROOT
 from rclpy.node import Node
 from rclpy.serialization import serialize_message
+from ros_support import ros
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.wiring import unit_kinds
-from cnc_ptp.nodes import axis, clock, nc_channel, player, plc_bridge, process, recorder, spindle
+from cnc_ptp.nodes import axis, clock, nc_channel, player, plc_bridge, recorder, spindle
 from cnc_ptp.nodes.unit.parameters import declare_parameters, require_known_parameters
 from cnc_ptp.nodes.unit.unit_node import MACHINE
 from cnc_ptp.parameters import read_machine
@@ -168,17 +168,13 @@ def test_a_machine_file_is_a_parameters_file(path):
 
 def overrides_of(path, units, machine):
     """Name of each node, and the parameters that ROS has given it, after they were compared with the machine."""
-    with click.Context(click.Command("node"), obj=split(["--ros-args", "--params-file", str(path)])[1]).scope():
-        process.initialise()
-        try:
-            for name in units:
-                own = MACHINE if name == PLC else name
-                node = Node(own, enable_rosout=False, start_parameter_services=False)
-                declare_parameters(node, machine, own)
-                yield name, {*node._parameter_overrides}
-                node.destroy_node()
-        finally:
-            rclpy.try_shutdown()
+    with click.Context(click.Command("node"), obj=split(["--ros-args", "--params-file", str(path)])[1]).scope(), ros():
+        for name in units:
+            own = MACHINE if name == PLC else name
+            node = Node(own, enable_rosout=False, start_parameter_services=False)
+            declare_parameters(node, machine, own)
+            yield name, {*node._parameter_overrides}
+            node.destroy_node()
 
 
 def sections(path):
@@ -197,17 +193,13 @@ def test_remaps_logs_and_namespace_take_effect():
         "cell.x:=error",
         "--enable-rosout-logs",
     ]
-    with click.Context(click.Command("node"), obj=split(["--ros-args", *words])[1]).scope():
-        process.initialise()
-        try:
-            node = axis.AxisNode(read_machine(PTP), "x")
-            node.setup()
-            topics = {publisher.topic_name for publisher in node.publishers}
-            services = {service.service_name for service in node.services}
-            level = node.get_logger().get_effective_level()
-            node.destroy_node()
-        finally:
-            rclpy.try_shutdown()
+    with click.Context(click.Command("node"), obj=split(["--ros-args", *words])[1]).scope(), ros():
+        node = axis.AxisNode(read_machine(PTP), "x")
+        node.setup()
+        topics = {publisher.topic_name for publisher in node.publishers}
+        services = {service.service_name for service in node.services}
+        level = node.get_logger().get_effective_level()
+        node.destroy_node()
     assert {"/cell/x/block", "/cell/commands", "/cell/diagnostics", "/robot/events"} <= topics
     assert {"/cell/x/move_absolute", "/cell/x/get_parameters"} <= services
     assert {name for name in topics | services if not name.startswith("/cell/")} <= {
@@ -220,13 +212,10 @@ def test_remaps_logs_and_namespace_take_effect():
 
 def test_other_machine_values_raise_by_name():
     """The refusal is an error of the node, not of its process: composed nodes have it as well."""
-    with click.Context(click.Command("node"), obj=split(["--ros-args", "-p", "a:=1"])[1]).scope():
-        process.initialise()
-        try:
-            with pytest.raises(CncError, match="x: parameter a = 1 of the ROS arguments is refused"):
-                require_known_parameters(Node("x", enable_rosout=False))
-        finally:
-            rclpy.try_shutdown()
+    context = click.Context(click.Command("node"), obj=split(["--ros-args", "-p", "a:=1"])[1])
+    refused = pytest.raises(CncError, match="x: parameter a = 1 of the ROS arguments is refused")
+    with context.scope(), ros(), refused:
+        require_known_parameters(Node("x", enable_rosout=False))
 
 
 def test_a_published_recording_leaves_plc_inputs_out(tmp_path):
@@ -235,8 +224,7 @@ def test_a_published_recording_leaves_plc_inputs_out(tmp_path):
     with Recording(str(path), PTP.read_text(), 0, 1_000_000) as recording:
         recording.tick(CycleTick(0, 10))
         recording.raw("/x/jog", "cnc_ptp/msg/Jog", serialize_message(msg.Jog()), 0)
-    process.initialise()
-    try:
+    with ros():
         for inputs, left_out in ((False, ["/x/jog"]), (True, [])):
             node = player.PlayerNode(str(path), rate=1.0, inputs=inputs)
             assert node.inputs_left_out == left_out
@@ -244,5 +232,3 @@ def test_a_published_recording_leaves_plc_inputs_out(tmp_path):
             text = "; 1 topics of PLC inputs are left out (--inputs publishes them)"
             assert player._left_out(node) == ("" if inputs else text)
             node.destroy_node()
-    finally:
-        rclpy.try_shutdown()

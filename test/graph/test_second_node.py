@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 import rclpy
 from graph_support import MILL, TIMEOUT, Running, nodes_of, one_axis_machine, run, verified
+from ros_support import ros
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
@@ -105,8 +106,7 @@ def test_a_second_node_during_the_run_is_refused(one_axis, ros_domain, tmp_path)
     recording = tmp_path / "run.mcap"
     scenario = tmp_path / "move.yaml"
     scenario.write_text("- {at: 0.0, to: x, do: move_absolute, target: 50000.0, velocity: 50.0}\n")
-    graph = Running(one_axis, "--scenario", scenario, "--record", recording)
-    try:
+    with Running(one_axis, "--scenario", scenario, "--record", recording) as graph:
         graph.wait_until_recorded(recording, 5_000)
         own = nodes_of(graph.process.pid)["x"]
         second = node(one_axis, "x")
@@ -119,8 +119,6 @@ def test_a_second_node_during_the_run_is_refused(one_axis, ros_domain, tmp_path)
             second.stderr.close()
         graph.process.send_signal(signal.SIGTERM)
         output = graph.finish(expect=1)
-    finally:
-        graph.end()
     assert "lost 0, computed twice 0" in output
     assert verified(recording).states["/x/state"]["set_velocity"].max() == 50.0
 
@@ -153,10 +151,7 @@ def test_the_clock_does_not_start_with_two_nodes_of_a_unit_on_two_computers(one_
 
 
 def test_nodes_that_were_never_set_up_end_without_a_word():
-    process.initialise()
-    try:
+    with ros():
         machine = read_machine(str(MILL))
         for node in (AxisNode(machine, "x"), PlcBridgeNode(machine)):
             node.destroy_node()
-    finally:
-        rclpy.try_shutdown()

@@ -51,8 +51,7 @@ def test_a_timeout_of_0_watches_nothing(ros_domain, tmp_path):
         text.replace("/machine:\n  ros__parameters:\n", "/machine:\n  ros__parameters:\n    life_sign_timeout_ms: 0\n")
     )
     assert read_machine(str(machine)).life_sign_timeout_ms == 0
-    graph = Running(machine, "--duration", UNHEARD_DURATION, "--record", recording)
-    try:
+    with Running(machine, "--duration", UNHEARD_DURATION, "--record", recording) as graph:
         graph.wait_for_nodes(3)
         with connected(StatusClient, machine) as client:
             client.wait_blocks("x", 1)
@@ -74,15 +73,12 @@ def test_a_timeout_of_0_watches_nothing(ros_domain, tmp_path):
         graph.process.send_signal(signal.SIGINT)
         graph.finish(expect=1)
         verified(recording)
-    finally:
-        graph.end()
 
 
 def test_a_plc_that_dies_leaves_nothing_moving(ros_domain, tmp_path):
     """Its external commands are halted; what a service moves is held; the path stands; each hold ends by a command."""
     machine, recording = small_machine(tmp_path), tmp_path / "run.mcap"
-    graph = Running(machine, "--duration", UNHEARD_DURATION, "--record", recording)
-    try:
+    with Running(machine, "--duration", UNHEARD_DURATION, "--record", recording) as graph:
         graph.wait_for_nodes(7)
         with connected(StatusClient, machine) as client:
             client.wait_blocks("x", 1)
@@ -107,15 +103,12 @@ def test_a_plc_that_dies_leaves_nothing_moving(ros_domain, tmp_path):
         graph.process.send_signal(signal.SIGINT)
         graph.finish(expect=1)
         verified(recording)
-    finally:
-        graph.end()
 
 
 def test_a_machine_without_a_channel_is_held_too(ros_domain, tmp_path):
     """And the next message of the PLC that serves the feed hold ends it: the axis continues to its target."""
     machine, recording = one_axis_machine(tmp_path), tmp_path / "run.mcap"
-    graph = Running(machine, "--duration", UNHEARD_DURATION, "--record", recording)
-    try:
+    with Running(machine, "--duration", UNHEARD_DURATION, "--record", recording) as graph:
         graph.wait_for_nodes(3)
         with connected(StatusClient, machine) as client:
             client.wait_blocks("x", 1)
@@ -136,5 +129,3 @@ def test_a_machine_without_a_channel_is_held_too(ros_domain, tmp_path):
         graph.process.send_signal(signal.SIGINT)
         graph.finish(expect=1)
         verified(recording)
-    finally:
-        graph.end()

@@ -58,14 +58,11 @@ def test_a_dead_master_stops_its_slaves(tmp_path, dead, first):
     """The next slave misses its master's blocks, stops on its own ramp with an error, and all others follow."""
     scenario, recording = tmp_path / "cascade.yaml", tmp_path / "run.mcap"
     scenario.write_text(CASCADE)
-    graph = Running(PTP, "--scenario", scenario, "--record", recording)
-    try:
+    with Running(PTP, "--scenario", scenario, "--record", recording) as graph:
         nodes = dict(graph.wait_for_nodes(7))
         graph.wait_until_recorded(recording, UNDER_WAY)
         kill(nodes[dead])
         output = graph.finish(expect=1)
-    finally:
-        graph.end()
     assert wait_until_gone(nodes.values()) == []
     assert f"axis {first}: no block of '{dead}' came within the watchdog time" in output
     assert f"P-ERR-26104 node '{dead}'" in output and "P-ERR-26265 " in output

@@ -57,13 +57,10 @@ def test_nodes_by_hand_without_a_supervisor(one_axis, tmp_path):
 
 def test_interrupted_composed_run(one_axis, tmp_path):
     recording = tmp_path / "composed.mcap"
-    graph = Running(one_axis, "--scenario", tmp_path / "move.yaml", "--composed", "--record", recording)
-    try:
+    with Running(one_axis, "--scenario", tmp_path / "move.yaml", "--composed", "--record", recording) as graph:
         graph.wait_until_recorded(recording, 20_000)
         graph.process.send_signal(signal.SIGTERM)
         output = graph.finish(expect=1)
-    finally:
-        graph.end()
     assert "P-ERR-26106 the run was interrupted (SIGTERM); everything was stopped on its ramps" in output
     recorded = verified(recording)
     assert recorded.complete and recorded.states["/x/state"]["set_velocity"][-1] == 0.0

@@ -8,8 +8,8 @@ import weakref
 from itertools import pairwise
 
 import pytest
-import rclpy
 from rclpy.node import Node
+from ros_support import ros
 
 from cnc_ptp.nodes import process
 
@@ -23,9 +23,8 @@ class Standing(Node):
 
 @pytest.fixture
 def node(ros_domain):
-    rclpy.init(domain_id=ros_domain)
-    yield Standing("standing")
-    rclpy.try_shutdown()
+    with ros():
+        yield Standing("standing")
 
 
 def test_a_timer_that_stands_is_called_by_the_loop(node):

@@ -35,10 +35,9 @@ def recording(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def graph(ros_domain, recording):
-    graph = Running(PTP, "--duration", 300, "--record", recording)
-    graph.wait_for_nodes(7)
-    yield graph
-    graph.end()
+    with Running(PTP, "--duration", 300, "--record", recording) as graph:
+        graph.wait_for_nodes(7)
+        yield graph
 
 
 @pytest.fixture(scope="module")

@@ -25,8 +25,7 @@ ENDS = {
 @pytest.mark.parametrize("end", long_but(ENDS, ["axis lost", "emergency stop"]))
 def test_a_trajectory_that_ends_in_the_middle(ros_domain, tmp_path, end):
     """Number and text of the result; the axes that are still there come to rest on their ramps."""
-    graph = Running(PTP, "--duration", 300, "--record", tmp_path / "run.mcap")
-    try:
+    with Running(PTP, "--duration", 300, "--record", tmp_path / "run.mcap") as graph:
         nodes = dict(graph.wait_for_nodes(7))
         with connected(TrajectoryClient, PTP) as client:
             client.wait_blocks("x", 1)
@@ -40,8 +39,6 @@ def test_a_trajectory_that_ends_in_the_middle(ros_domain, tmp_path, end):
             if end not in ("axis lost", "end of the run"):
                 graph.process.send_signal(signal.SIGINT)
         graph.finish(expect=1)
-    finally:
-        graph.end()
     velocity = verified(tmp_path / "run.mcap", whole=False).states["/x/state"]["set_velocity"]
     assert velocity.max() > 10.0 and velocity[-1] == 0.0 and np.abs(np.diff(velocity)).max() <= 20.0 * 1.001
 

@@ -79,14 +79,11 @@ def test_a_machine_is_operated_and_its_server_killed(ros_domain, machine, folder
                 await page.next()
             await asyncio.sleep(1.5)
 
-    run = Running(machine, "--composed", "--web", str(port), "--stay", "--record", str(recording))
-    try:
+    with Running(machine, "--composed", "--web", str(port), "--stay", "--record", str(recording)) as run:
         wait_for_server(run)
         asyncio.run(story(run))
         run.process.send_signal(signal.SIGINT)
         run.finish(0)
-    finally:
-        run.end()
     verified(recording)
     recorded = read_recording(recording)
     told = [event.text for event in recorded.events if event.source == "web"]
@@ -129,14 +126,11 @@ def test_a_program_waits_for_a_page_and_a_page_takes_a_snapshot(ros_domain, mach
             earlier.write_bytes(await before.read())
             return first["cycle"], answer["cycle"], int(reply.headers["X-First-Cycle"])
 
-    run = Running(machine, "--composed", "--web", str(port), "--stay", "--keep", "5", "--record", str(recording))
-    try:
+    with Running(machine, "--composed", "--web", str(port), "--stay", "--keep", "5", "--record", str(recording)) as run:
         wait_for_server(run)
         asked, acknowledged, begin = asyncio.run(story())
         run.process.send_signal(signal.SIGINT)
         run.finish(0)
-    finally:
-        run.end()
     verified(recording)
     states = read_recording(recording).states["/x/state"]
     moved = states["cycle"][states["set_position"] != 0.0]
@@ -149,14 +143,11 @@ def test_a_program_waits_for_a_page_and_a_page_takes_a_snapshot(ros_domain, mach
 
 
 def test_a_run_is_killed_and_its_server_ends(ros_domain, machine):
-    run = Running(machine, "--composed", "--web", str(unused_port()), "--stay")
-    try:
+    with Running(machine, "--composed", "--web", str(unused_port()), "--stay") as run:
         wait_for_server(run)
         server = server_of(run)
         run.process.kill()
         server.wait(30)
-    finally:
-        run.end()
 
 
 def test_pages_that_are_older_than_the_graph_and_outlive_it(ros_domain, machine):
@@ -193,12 +184,9 @@ def test_pages_that_are_older_than_the_graph_and_outlive_it(ros_domain, machine)
             refused = await page.command("x", "move_absolute", target=1)
             assert not refused["ok"] and refused["number"] == 26244, refused
             for _ in range(2):
-                run = Running(machine, "--stay")
-                try:
+                with Running(machine, "--stay") as run:
                     await operate(page)
                     await end(page, run)
-                finally:
-                    run.end()
 
     try:
         assert f"http://localhost:{port}" in server.stdout.readline()
@@ -271,15 +259,14 @@ def test_a_server_that_begins_late_knows_what_was_before(ros_domain, machine, fo
         assert f"http://localhost:{port}" in server.stdout.readline()
         return port
 
-    run = Running(pallets, "--composed", "--stay")
     servers = []
     try:
-        before()
-        asyncio.run(asyncio.wait_for(story(start()), 60.0))
+        with Running(pallets, "--composed", "--stay"):
+            before()
+            asyncio.run(asyncio.wait_for(story(start()), 60.0))
     finally:
         for server in servers:
             server.kill()
-        run.end()
 
 
 def test_pages_of_a_run_with_tls_on_another_address(ros_domain, machine, folder):
@@ -297,12 +284,9 @@ def test_pages_of_a_run_with_tls_on_another_address(ros_domain, machine, folder)
             return (await session.get(f"https://127.0.0.2:{port}", ssl=trusted)).status
 
     words = ("--web-host", "127.0.0.2", "--web-tls-cert", str(certificate), "--web-tls-key", str(key))
-    run = Running(machine, "--composed", "--web", str(port), *words, "--stay")
-    try:
+    with Running(machine, "--composed", "--web", str(port), *words, "--stay") as run:
         wait_for_server(run, f"pages: https://127.0.0.2:{port} ")
         assert asyncio.run(status()) == 200
-    finally:
-        run.end()
 
 
 def wait_for_server(run, told="pages: "):

@@ -4,11 +4,11 @@ import time
 from collections.abc import Sequence
 from contextlib import contextmanager
 
-import rclpy
-from graph_support import Running
+from graph_support import LAST_WORDS, Running
 from rclpy.action import ActionClient
 from rclpy.node import Node
 from rclpy.serialization import deserialize_message
+from ros_support import ros
 
 from cnc_ptp import msg
 from cnc_ptp.machine.wiring import unit_kinds
@@ -159,29 +159,20 @@ class Client(Node):
 @contextmanager
 def connected(make, machine):
     """A client beside a run (`make` of the machine); it is closed with the block, however that ends."""
-    process.initialise()
-    try:
+    with ros():
         client = make(read_machine(str(machine)))
         client.start()
         yield client
         client.destroy_node()
         client.executor_of_test.shutdown()
-    finally:
-        rclpy.try_shutdown()
 
 
 @contextmanager
 def beside_composed_run(machine):
     """A client beside a run of the machine in one process; both end with the block."""
-    graph = Running(machine, "--duration", "600", "--composed")
-    process.initialise()
-    client = Client(read_machine(machine))
-    client.start()
-    client.wait_blocks("plc", 3)
-    try:
-        yield client
-    finally:
+    with Running(machine, "--duration", "600", "--composed") as graph:
+        with connected(Client, machine) as client:
+            client.wait_blocks("plc", 3)
+            yield client
         graph.process.terminate()
-        graph.process.wait(timeout=20.0)
-        client.destroy_node()
-        rclpy.try_shutdown()
+        graph.process.wait(timeout=LAST_WORDS)

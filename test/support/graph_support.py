@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +22,9 @@ LATHE = ROOT / "config" / "lathe.yaml"
 PTP = ROOT / "config" / "ptp.yaml"
 TIMEOUT = 150.0
 """Seconds: longer than a run whose nodes are started three times (supervisor.START_TIMEOUTS)."""
+
+LAST_WORDS = 20.0
+"""Seconds in which a run ends that was told to."""
 
 SHORT_PROGRAM = """%short
 N10 G90 G17 T1 D1 G135 G136 Y80 Z0
@@ -104,13 +108,23 @@ def run(*arguments, expect=0):
 
 
 class Running:
-    """A graph run in the background."""
+    """A graph run in the background; it ends with a `with` block, and an error there tells what it printed."""
 
     def __init__(self, *arguments):
         self.process = subprocess.Popen(
             command("run", *arguments), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
         )
         self.children = {}
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, _kind, error, _traceback):
+        if error and not self.process.stdout.closed:
+            self.process.terminate()
+            with suppress(subprocess.TimeoutExpired):
+                error.add_note("The run printed:\n" + self.process.communicate(timeout=LAST_WORDS)[0])
+        self.end()
 
     def wait_for_nodes(self, count):
         """Waits until `count` node processes live; pid by node."""
@@ -143,6 +157,7 @@ class Running:
         if self.process.poll() is None:
             self.process.kill()
             self.process.wait()
+        self.process.stdout.close()
 
 
 def parent_of(pid):
