@@ -168,10 +168,13 @@ class OpenRecording:
         """All of its files have an index."""
         return all(file.indexed for file in self._files)
 
+    @property
+    def state_topics(self) -> list[str]:
+        return [topic for topic, info in self.topics.items() if info.type_name in STATE_TYPES]
+
     def recorded_span(self) -> tuple[float, float]:
         """First and last time of the states of all units, s; of all topics where there are none. NaN without any."""
-        states = [topic for topic, info in self.topics.items() if info.type_name in STATE_TYPES]
-        spans = [self.span(topic) for topic in states or self.topics]
+        spans = [self.span(topic) for topic in self.state_topics or self.topics]
         return min((first for first, _ in spans), default=nan), max((last for _, last in spans), default=nan)
 
     def close(self) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
-from math import isnan
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -97,8 +96,10 @@ def notes_of_both(
 
 
 def span_text(file: OpenRecording) -> str:
+    if not file.state_topics:
+        return "holds no states"
     first, last = file.recorded_span()
-    return "holds no states" if isnan(first) else f"covers {first:.10g} s to {last:.10g} s"
+    return f"covers {first:.10g} s to {last:.10g} s"
 
 
 def asked_part(begin: float | None, end: float | None) -> str:

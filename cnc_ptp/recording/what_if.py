@@ -14,7 +14,7 @@ from typing import Any, Final, NamedTuple
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
 from cnc_ptp.parameters import load_machine
-from cnc_ptp.parameters.changed import changed_text, read_changes
+from cnc_ptp.parameters.changed import BAD_CHANGE, changed_text, read_changes
 from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import ChannelBlock, Command, CommandRecord, CycleBlock
@@ -24,6 +24,7 @@ from cnc_ptp.recording.checkpoints import state_before
 from cnc_ptp.recording.computed_again import commands_by_cycle, computed_again, fresh_machine, refused_again
 from cnc_ptp.recording.recorded_answers import DelayedAnswers, RecordedAnswers
 from cnc_ptp.recording.run_inputs import RunInputs
+from cnc_ptp.recording.selection import NOT_RECORDED
 from cnc_ptp.state.other_parameters import change_parameters
 
 TIME_OUTSIDE: Final = 26154
@@ -53,7 +54,7 @@ class WhatIf:
     """The changed run. `note` says from where it was computed; `machine_text` and `machine` have the parameters."""
 
     def __init__(self, recorded: RunInputs, change: Change) -> None:
-        """`recorded` stays open as long as it runs. Raises ParameterError, CncError 26153, 26154, 26155, 26157."""
+        """`recorded` stays open as long as it runs. Raises ParameterError, CncError 26011, 26153 to 26155, 26157."""
         self._recorded, self._change = recorded, change
         self._old = recorded.required_machine()
         self.machine_text = recorded.machine_yaml
@@ -62,6 +63,7 @@ class WhatIf:
             changes = read_changes(change.parameters, self._old)
             self.machine_text = changed_text(recorded.machine_yaml, changes)
             self.machine = load_machine(recorded.machine_yaml, f"{recorded.path}:machine.yaml", changes=changes)
+        self._check_override()
         self._cycle_time = self._old.cycle_time_us * 1e-6
         self.begin = self._block_at(change.begin)
         self.end = recorded.end if change.end is None else self._end_at(change.end)
@@ -106,6 +108,15 @@ class WhatIf:
             self.running = [name for name, output in outputs.items() if is_in_program(output.block)]
             yield outputs
 
+    def _check_override(self) -> None:
+        """Raises CncError 26153 for one that a channel refuses."""
+        percent = self._change.override
+        for name, channel in self.machine.channels.items():
+            limit = channel.max_override_percent
+            if percent is not None and not 0.0 <= percent <= limit:
+                reason = f"--override {percent:g} is not within 0 ... {limit:g} of {name} (P-CHAN-00056)"
+                raise CncError(BAD_CHANGE, reason, NOTHING, value=percent, limit=limit)
+
     def _end_at(self, seconds: float) -> int:
         """It may be later than what is recorded. Raises CncError 26154."""
         if seconds < self._change.begin:
@@ -114,11 +125,13 @@ class WhatIf:
         return round(seconds / self._cycle_time)
 
     def _block_at(self, seconds: float) -> int:
-        """The first cycle of the block in which a time lies. Raises CncError 26154.
+        """The first cycle of the block in which a time lies. Raises CncError 26011, 26154.
 
         Before the first block that is recorded nobody knows which commands were those of channels.
         """
         begin, duration = self._recorded.begin * self._cycle_time, self._recorded.end * self._cycle_time
+        if duration == 0.0:
+            raise CncError(NOT_RECORDED, f"recording {self._recorded.path}: holds no states", NOTHING)
         if not begin <= seconds <= duration:
             reason = f"--from {seconds:g} is not within the recorded time {begin:g} ... {duration:g} s"
             raise CncError(TIME_OUTSIDE, reason, NOTHING, value=seconds, limit=duration)

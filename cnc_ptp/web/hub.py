@@ -27,7 +27,7 @@ AGAIN = 1.0
 """Seconds until a machine that was not found is looked for again."""
 LOGINS_PERIOD = 0.5
 """Seconds between two looks at whether the logins of pages have ended."""
-WAITING = CncError(NO_MACHINE_YET, "no machine runs", "the page is filled as soon as there is one")
+WAITING = CncError(NO_MACHINE_YET, "no machine is found", "the page is filled as soon as there is one")
 
 
 class Hub:

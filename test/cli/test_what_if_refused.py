@@ -38,11 +38,17 @@ def test_commands_that_are_refused_now_are_named(tmp_path: Path) -> None:
 
 
 def test_a_change_that_the_machine_refuses_is_status_1(tmp_path: Path) -> None:
-    lines, path = tmp_path / "lines.nc", tmp_path / "run.mcap"
+    lines, path, more = (tmp_path / name for name in ("lines.nc", "run.mcap", "more.yaml"))
     lines.write_text("G01 X50 F2400\nM30\n")
+    more.write_text("- {at: 0, to: channel, do: set_override, percent: 500}\n")
     mill = ROOT / "config" / "mill.yaml"
     assert call("simulate", mill, "--program", lines, "--record", path).exit_code == 0
-    result = call("replay", path, "--override", 500)
+    result = call("replay", path, "--override", 500, "-o", tmp_path / "new.mcap")
+    assert (result.exit_code, result.output) == (
+        2,
+        "P-ERR-26153 --override 500 is not within 0 ... 150 of channel (P-CHAN-00056); nothing was computed\n",
+    )
+    result = call("replay", path, "--commands", more)
     assert result.exit_code == 1
     assert result.stderr.splitlines() == [
         "error: set_override to channel at 0 s is refused: channel channel: set_override refused: percent = 500.0 "

@@ -77,6 +77,23 @@ def test_a_cut_or_shorter_file_is_named(whole: Path, tmp_path: Path) -> None:
     ]
 
 
+def test_a_file_that_was_cut_before_its_first_state(whole: Path, tmp_path: Path) -> None:
+    index = McapIndex(whole)
+    first = next(chunk for chunk in index.chunks if index.ids_of("/x/state") <= set(chunk.channels))
+    index.close()
+    cut, page = tmp_path / "cut.mcap", tmp_path / "a.html"
+    cut.write_bytes(whole.read_bytes()[: first.offset])
+    nothing = f"P-ERR-26011 recording {cut}: holds no states; nothing was"
+    assert words(call("report", cut, "-o", page)) == f"{nothing} drawn"
+    assert words(call("report", whole, "--compare", cut, "-o", page)) == f"{nothing} drawn"
+    assert words(call("replay", cut, "--from", 1)) == f"{nothing} computed"
+    assert words(call("diff", whole, cut)) == (
+        f"P-ERR-26022 the recordings have no cycle in common: {whole} covers 0 s to 2.999 s and {cut} holds no states; "
+        "nothing was compared"
+    )
+    assert not page.exists()
+
+
 def test_a_cut_file_has_one_end(whole: Path, tmp_path: Path) -> None:
     """Of its last second only the ticks are whole: no state of it is there."""
     index = McapIndex(whole)

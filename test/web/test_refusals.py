@@ -113,7 +113,7 @@ def test_no_machine_yet():
     async def story(here):
         page = await here.page(commands=False)
         why = page.hello["why"]
-        text = "no machine runs; the page is filled as soon as there is one"
+        text = "no machine is found; the page is filled as soon as there is one"
         assert (why["number"], why["text"]) == (26244, text)
 
     run(story, connect=connect, waits=False)

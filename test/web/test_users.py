@@ -2,7 +2,10 @@
 
 import asyncio
 import os
+import pty
 import ssl
+import subprocess
+import sys
 from types import SimpleNamespace
 
 import aiohttp
@@ -309,6 +312,38 @@ def test_the_command(users, words, status, text):
     result = CliRunner().invoke(main, ["users", *words, "--users", str(users)])
     assert result.exit_code == status
     assert text in result.output.splitlines()
+
+
+@pytest.mark.parametrize(
+    ("typed", "status", "text"),
+    [
+        (f"{PASSWORD}\n", 0, "anna is operator"),
+        ("", 2, "P-ERR-26246 user anna: a password has 8 to 256 characters, not 0; nothing was changed"),
+    ],
+)
+def test_a_password_from_a_pipe(users, typed, status, text):
+    words = ["users", "add", "anna", "--role", "operator", "--users", str(users)]
+    result = CliRunner().invoke(main, words, input=typed)
+    assert (result.exit_code, result.output) == (status, f"{text}\n")
+    assert ("anna" in read_users(users)["users"]) is (status == 0)
+
+
+def test_a_password_of_somebody_at_a_terminal(users):
+    """It is asked for twice, and not shown."""
+    command = [sys.executable, "-m", "cnc_ptp", "users", "add", "anna", "--role", "viewer", "--users", str(users)]
+    own, other = pty.openpty()
+    with subprocess.Popen(command, stdin=other, stdout=other, stderr=other, start_new_session=True) as asking:
+        os.close(other)
+        seen = ""
+        for prompt in ("Password: ", "Repeat for confirmation: "):
+            while not seen.endswith(prompt):
+                seen += os.read(own, 1000).decode()
+            os.write(own, f"{PASSWORD}\n".encode())
+        while "anna is viewer" not in seen:
+            seen += os.read(own, 1000).decode()
+    os.close(own)
+    assert asking.returncode == 0 and PASSWORD not in seen
+    assert read_users(users)["users"]["anna"].role == "viewer"
 
 
 def test_removing_nobody(users):

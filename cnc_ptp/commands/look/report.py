@@ -7,13 +7,14 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from cnc_ptp.commands.output_file import check_page, write_output
+from cnc_ptp.errors import CncError
 from cnc_ptp.plots.comparison import page_of, units_of
 from cnc_ptp.plots.report import report_page
 from cnc_ptp.recording.command_words import json_object
 from cnc_ptp.recording.difference import PROGRAM, compared
 from cnc_ptp.recording.long_recording import read_own
 from cnc_ptp.recording.reader import Recorded
-from cnc_ptp.recording.selection import selected
+from cnc_ptp.recording.selection import NOT_RECORDED, selected
 
 
 def report(
@@ -28,13 +29,12 @@ def report(
     """Writes the page, of a part if asked for, alone or against another recording; warns of one that was cut off."""
     check_page(output, recording=recording, other_recording=compare)
     lines: list[str] = []
-    whole = read_own(recording, begin, end)
-    recorded = selected(whole, begin=begin, end=end, units=axes)
+    whole, recorded = whole_and_part(recording, begin, end, axes)
     made = datetime.now(tz=UTC).strftime("%Y-%m-%d %H:%M UTC")
     if compare is None:
         page = report_page(recorded, program=program_of(whole), date=made)
     else:
-        other = selected(read_own(compare, begin, end), begin=begin, end=end, units=axes)
+        _, other = whole_and_part(compare, begin, end, axes)
         both = compared(recorded, other, align)
         page, lines = page_of(both, date=made), both.lines(units_of(both.pair))
     write_output(output, page, remains="the recording is unchanged")
@@ -46,6 +46,15 @@ def report(
     if not recorded.complete:
         print(f"note: {recorded.missing}")
     return 0
+
+
+def whole_and_part(path: str, begin: float | None, end: float | None, axes: Sequence[str]) -> tuple[Recorded, Recorded]:
+    """Raises CncError 26011 for a part in which no states are."""
+    whole = read_own(path, begin, end)
+    part = selected(whole, begin=begin, end=end, units=axes)
+    if not part.states:
+        raise CncError(NOT_RECORDED, f"recording {path}: holds no states", "nothing was drawn")
+    return whole, part
 
 
 def program_of(recorded: Recorded) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import click
@@ -17,6 +18,13 @@ ROLE = click.option("--role", type=click.Choice(ROLES), required=True, help="Wha
 NAME = click.argument("name")
 
 
+def given_password() -> str:
+    """Of somebody at a terminal, or from a pipe."""
+    if sys.stdin.isatty():
+        return str(click.prompt("Password", hide_input=True, confirmation_prompt=True))
+    return sys.stdin.readline().rstrip("\n")
+
+
 @click.group("users", cls=Group)
 def web_users() -> None:
     """Users of the pages: add, remove, list; tokens of machines."""
@@ -27,12 +35,12 @@ def web_users() -> None:
 @NAME
 @FILE
 @ROLE
-@click.password_option(help="Asked for when it is not given.")
-def add(name: str, file: str, role: str, password: str) -> None:
+@click.option("--password", help="Without it: asked for, or the first line that another program gives.")
+def add(name: str, file: str, role: str, password: str | None) -> None:
     """Add a user, or give one another role and password."""
     from cnc_ptp.web.access.users import add_user
 
-    add_user(Path(file), name, role, password)
+    add_user(Path(file), name, role, given_password() if password is None else password)
     print(f"{name} is {role}")
 
 
