@@ -33,14 +33,14 @@ $(VENV)/.python:
 LOCKED ?= $(wildcard $(VENV)/.requirements-locked)
 INSTALLED := $(VENV)/.requirements$(if $(LOCKED),-locked)
 $(INSTALLED): $(REQUIREMENTS) $(if $(LOCKED),requirements.lock) $(VENV)/.python
-	@echo "Installing ROS 2 and the other packages into $(VENV) (one minute to four) ..."
+	@echo "Installing ROS 2 and the other packages into $(VENV) (1 to 4 minutes) ..."
 	@$(BIN)/pip install --quiet --disable-pip-version-check \
 	  $(if $(LOCKED),--require-hashes -r requirements.lock,$(addprefix -r ,$(REQUIREMENTS)))
 	@rm -f $(VENV)/.requirements $(VENV)/.requirements-locked && touch $@
 
 $(VENV)/.package: $(PACKAGE) $(INTERFACES) $(INSTALLED)
-	@echo "Generating the ROS interfaces, compiling the kernel and installing cnc_ptp into $(VENV) (up to six minutes on two cores) ..."
-	@$(BIN)/pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps --editable .
+	@echo "Generating the ROS interfaces, compiling the kernel and installing cnc_ptp into $(VENV) (about 500 files, 2 to 8 minutes on two cores) ..."
+	@$(BIN)/python tools/build_progress.py build $(BIN)/pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps --editable .
 	@touch $@
 
 # Without a C compiler the kernel runs interpreted; the program says why. A library that is gone is made again.
@@ -48,7 +48,7 @@ ifeq ($(wildcard cnc_ptp/compiled/library/*.so),)
 .PHONY: $(VENV)/.kernel
 endif
 $(VENV)/.kernel: $(SOURCES) pyproject.toml $(VENV)/.package
-	@CNC_PTP_PURE=1 $(BIN)/python -m cnc_ptp.compiled.build > build/kernel.log && touch $@ || true
+	@CNC_PTP_PURE=1 $(BIN)/python tools/build_progress.py build $(BIN)/python -m cnc_ptp.compiled.build > build/kernel.log && touch $@ || true
 
 demo: setup
 	@mkdir -p runs
