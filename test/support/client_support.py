@@ -4,7 +4,7 @@ import time
 from collections.abc import Sequence
 from contextlib import contextmanager
 
-from graph_support import LAST_WORDS, Running
+from graph_support import LAST_WORDS, TIMEOUT, Running
 from rclpy.action import ActionClient
 from rclpy.node import Node
 from rclpy.serialization import deserialize_message
@@ -15,8 +15,6 @@ from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import process
 from cnc_ptp.nodes.topics import BLOCK_TYPES, BLOCKS, COMMAND, EVENT, EVENTS, PLC_INPUT, SERVICES, block_topic
 from cnc_ptp.parameters import read_machine
-
-TIMEOUT = 60.0
 
 
 class Blocks(Sequence):

@@ -78,9 +78,7 @@ class Jogger:
         moved, sent = False, started_at
         deadline = math.inf if seconds is None else started_at + seconds
         while not ended() and not self._refused and not self._blocks.gone and time.monotonic() < deadline:
-            self._stalled = time.monotonic() - sent > SILENCE
-            if self._stalled:  # the machine has ended the jog; that this process continues is no reason to move again
-                self.report(f"this command was suspended for more than {SILENCE:g} s; the jog has ended")
+            if self._is_stalled(sent):
                 return
             sent = time.monotonic()
             self._sender.send(self._velocity)
@@ -89,8 +87,16 @@ class Jogger:
             moved = moved or view.state == JOGS
             stopped = view.state != JOGS and (moved or time.monotonic() - started_at > START)
             gone = abs((view.position or 0.0) - start)
-            if stopped or end.is_due(gone, abs(view.speed or 0.0), view.cycle):
+            due = end.is_due(gone, abs(view.speed or 0.0), view.cycle)
+            if self._is_stalled(sent) or stopped or due:
                 return
+
+    def _is_stalled(self, sent: float) -> bool:
+        """The machine has ended the jog since then; that this process continues is no reason to move again."""
+        self._stalled = time.monotonic() - sent > SILENCE
+        if self._stalled:
+            self.report(f"this command was suspended for more than {SILENCE:g} s; the jog has ended")
+        return self._stalled
 
     def end(self) -> int:
         """Ends the jog, waits for standstill, prints the position; returns the exit status."""
