@@ -120,7 +120,7 @@ def run(fault: Fault, folder: Path, *, domain: int) -> Row:
         computed = happened - begin - lateness_before(fault, graph.lateness)
         written = int(computed * 1e6 / machine.cycle_time_us)
         check_recording(row, case, recording, written)
-        if witness is not None:
+        if witness is not None and row.outcome == "stopped":  # one that survived has recorded it
             row.problems += (f"seen: {text}" for text in motion.seen_problems(witness.seen(), machine))
     return row
 

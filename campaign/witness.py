@@ -34,7 +34,7 @@ COLUMNS = {
 }
 STOP = "drive_stop "
 """Name of the values of a drive that has stopped on its own: this, and the unit."""
-START, PATIENCE = 30.0, 30.0
+START, PATIENCE = 30.0, 60.0
 """Seconds for the start of the program; for the first block of all units, and for its end."""
 
 
