@@ -99,6 +99,7 @@ class ClockNode(PollingNode):
         self._must_settle = self._ends = False
         take = chain(codec_of(PlcBlock).decode, self._on_plc)
         if handover is not None:
+            handover.on_ready(self._ready.add)
             handover.on_block(PLC, self._on_plc)
         elif free_run:
             received = self.readable(block_topic(PLC), take)

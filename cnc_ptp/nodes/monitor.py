@@ -106,6 +106,8 @@ class RunMonitor(PollingNode):
     def _report_ready(self) -> None:
         if self.cycle:
             self._ready_timer.cancel()
+        elif self._handover is not None:
+            self._handover.ready(MONITOR)
         elif all(subscription.get_publisher_count() for subscription in self._needed):
             self._report_publisher.publish(msg.BlockReport(source=MONITOR, first_cycle=-1))
 

@@ -7,6 +7,7 @@ import os
 import socket
 import sys
 import time
+import warnings
 from collections.abc import Callable, Iterable, MutableMapping, Sequence, Set
 from contextlib import redirect_stdout, suppress
 from io import StringIO
@@ -48,6 +49,8 @@ LATE_PERIODS = 1.25
 """A timer is late after these. After two, a watchdog takes the computer for suspended."""
 READY_PERIOD = 0.05
 """Seconds between two checks of a node that waits for all others."""
+UNHEARD_RESPONSE = "failed to send response"
+"""What rclpy warns of when the client of a service is suspended or gone; the client itself says that it got no answer."""
 PATIENCE = 3.0
 """Seconds that a process may take to finish its work after a signal to end."""
 
@@ -203,13 +206,15 @@ def spin(
     executor = EventsExecutor()
     try:
         take_nodes(executor, nodes)
-        while not done():
-            timers = [each for node in nodes for each in _timers.get(node, ()) if not each.cancelled]
-            executor.spin_once(timeout_sec=max(0.0, min([wait(), *(each.left() for each in timers)])))
-            after()
-            for each in timers:
-                each.call_if_late()
-            raise_failure(nodes)
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", UNHEARD_RESPONSE, RuntimeWarning)
+            while not done():
+                timers = [each for node in nodes for each in _timers.get(node, ()) if not each.cancelled]
+                executor.spin_once(timeout_sec=max(0.0, min([wait(), *(each.left() for each in timers)])))
+                after()
+                for each in timers:
+                    each.call_if_late()
+                raise_failure(nodes)
     finally:
         executor.shutdown()  # before the nodes: messages that arrive meanwhile would call what is destroyed
         for node in nodes:

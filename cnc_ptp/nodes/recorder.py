@@ -230,6 +230,8 @@ class RecorderNode(PollingNode):
     def _report_ready(self) -> None:
         if self._recording is not None:
             self._ready_timer.cancel()
+        elif self._handover is not None:
+            self._handover.ready(RECORDER)
         elif all(subscription.get_publisher_count() for subscription in self._needed):
             self._report(-1)
 

@@ -70,9 +70,11 @@ def test_a_late_composed_run_gives_the_executor_a_turn_after_each_tick(tmp_path)
         handover, ticks = Handover(), []
         handover.on_tick(lambda tick: ticks.append(tick.first_cycle), lambda: None)
         clock = ClockNode(machine, handover=handover)
-        for unit in unit_kinds(machine):
-            clock._on_report(msg.BlockReport(source=unit, first_cycle=-1))
         clock.advance()
+        for unit in unit_kinds(machine):
+            assert clock._started_at is None
+            handover.ready(unit)
+            clock.advance()
         clock._started_at -= 1.0  # a hundred ticks are due
         for turn in range(1, 4):
             clock.advance()

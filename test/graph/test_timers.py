@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import time
+import warnings
 import weakref
 from itertools import pairwise
 
@@ -65,3 +66,17 @@ def test_they_do_not_keep_a_node_that_is_gone(node):
     gone = run_and_end()
     gc.collect()
     assert gone() is None
+
+
+def test_a_response_that_nobody_hears_is_not_for_the_user(node, recwarn):
+    """rclpy warns of it with places in its sources; other warnings are told."""
+    told = iter(["failed to send response (timeout): client will not receive response, at /a.cpp:1", "another", ""])
+    said = []
+
+    def after():
+        if text := next(told):
+            warnings.warn(text, RuntimeWarning, stacklevel=1)
+        said.append(text)
+
+    process.spin([node], done=lambda: len(said) == 3, wait=lambda: 0.0, after=after)
+    assert [str(each.message) for each in recwarn] == ["another"]

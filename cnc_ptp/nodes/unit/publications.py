@@ -84,7 +84,10 @@ class UnitPublications:
 
     def ready(self) -> None:
         """To the clock."""
-        self._reports.publish(msg.BlockReport(source=self._unit.name, first_cycle=-1))
+        if self._handover is not None:
+            self._handover.ready(self._unit.name)
+        else:
+            self._reports.publish(msg.BlockReport(source=self._unit.name, first_cycle=-1))
 
     def block(self, block: CycleBlock) -> None:
         if self._handover is None or self.blocks.get_subscription_count():
