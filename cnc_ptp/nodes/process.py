@@ -50,7 +50,7 @@ LATE_PERIODS = 1.25
 READY_PERIOD = 0.05
 """Seconds between two checks of a node that waits for all others."""
 UNHEARD_RESPONSE = "failed to send response"
-"""What rclpy warns of when the client of a service is suspended or gone; the client itself says that it got no answer."""
+"""rclpy warns so when the client of a service is suspended or gone; the client says itself that it got no answer."""
 PATIENCE = 3.0
 """Seconds that a process may take to finish its work after a signal to end."""
 
