@@ -119,8 +119,8 @@ def run(fault: Fault, folder: Path, *, domain: int) -> Row:
         row.problems += left_behind(graph, fault, row.outcome)
         computed = happened - begin - lateness_before(fault, graph.lateness)
         written = int(computed * 1e6 / machine.cycle_time_us)
-        check_recording(row, case, recording, written)
-        if witness is not None and row.outcome == "stopped":  # one that survived has recorded it
+        whole = check_recording(row, case, recording, written)
+        if witness is not None and not (whole and row.outcome == "survived"):
             row.problems += (f"seen: {text}" for text in motion.seen_problems(witness.seen(), machine))
     return row
 
@@ -189,14 +189,14 @@ def names(fault: Fault, graph: Graph) -> list[str]:
     )
 
 
-def check_recording(row: Row, case: Case, recording: Path, written: int) -> None:
-    """Readable to the last block, everything at rest on ramps within limits, nothing torn apart."""
+def check_recording(row: Row, case: Case, recording: Path, written: int) -> bool:
+    """Readable to the last block, all at rest on ramps within limits, nothing torn apart. True for a whole one."""
     machine, fault = read_machine(str(case.machine)), row.fault
     try:
         recorded = read_recording(recording)
     except CncError as error:
         row.problems.append(f"the recording is not readable: {error}")
-        return
+        return False
     row.cycles = recorded.last_cycle + 1
     cut = fault.node == "recorder" and fault.signal in (KILL, HOLD)
     unsupervised = fault.node == SUPERVISOR and fault.signal == KILL
@@ -212,6 +212,7 @@ def check_recording(row: Row, case: Case, recording: Path, written: int) -> None
     row.own_stops = {stop.unit: len(stop.actual_position) for stop in recorded.drive_stops}
     check_links(row, case, recorded)
     row.problems += not_retracted(recorded)
+    return recorded.complete
 
 
 def not_retracted(recorded: Recorded) -> Iterator[str]:

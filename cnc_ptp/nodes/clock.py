@@ -74,7 +74,7 @@ class ClockNode(PollingNode):
         self._cycle_ns = machine.cycle_time_us * 1000
         self._block_time = machine.block_cycles * machine.cycle_time_us * 1e-6
         self._first_cycle = 0
-        self._ready: set[str] = set()
+        self._ready: set[str] = set() if handover is None else handover.ready
         self._watchdog = Watchdog(self._expected - {MONITOR}, seconds=machine.watchdog_ms / 1000.0)
         self._pace = FreeRunPace(
             self._expected, block_cycles=self._count, block_time=self._block_time, watchdog=self._watchdog
@@ -99,7 +99,6 @@ class ClockNode(PollingNode):
         self._must_settle = self._ends = False
         take = chain(codec_of(PlcBlock).decode, self._on_plc)
         if handover is not None:
-            handover.on_ready(self._ready.add)
             handover.on_block(PLC, self._on_plc)
         elif free_run:
             received = self.readable(block_topic(PLC), take)

@@ -1,6 +1,6 @@
 """Blocks between nodes of one process: handed over as they are; topics are for the world outside.
 
-So is that a node is ready: a run in one process depends on no message.
+Readiness is handed over in the same way: the start of such a run waits for no message.
 """
 
 from __future__ import annotations
@@ -25,16 +25,9 @@ class Handover:
         self._readers: dict[str, list[tuple[TakeBlock, Callable[[], None]]]] = {}
         self._newest: dict[str, CycleBlock] = {}
         self._waiting: deque[Callable[[], None]] = deque()
-        self._on_ready: list[Callable[[str], None]] = []
+        self.ready: set[str] = set()
+        """Nodes that have all that they need to compute."""
         self._running = False
-
-    def on_ready(self, take: Callable[[str], None]) -> None:
-        self._on_ready.append(take)
-
-    def ready(self, node: str) -> None:
-        """A node has all that it needs to compute."""
-        for take in self._on_ready:
-            take(node)
 
     def on_tick(self, take: Callable[[Tick], None], look: Callable[[], None]) -> None:
         """`look` is called after `take`."""

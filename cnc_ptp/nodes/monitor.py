@@ -107,7 +107,7 @@ class RunMonitor(PollingNode):
         if self.cycle:
             self._ready_timer.cancel()
         elif self._handover is not None:
-            self._handover.ready(MONITOR)
+            self._handover.ready.add(MONITOR)
         elif all(subscription.get_publisher_count() for subscription in self._needed):
             self._report_publisher.publish(msg.BlockReport(source=MONITOR, first_cycle=-1))
 

@@ -231,7 +231,7 @@ class RecorderNode(PollingNode):
         if self._recording is not None:
             self._ready_timer.cancel()
         elif self._handover is not None:
-            self._handover.ready(RECORDER)
+            self._handover.ready.add(RECORDER)
         elif all(subscription.get_publisher_count() for subscription in self._needed):
             self._report(-1)
 

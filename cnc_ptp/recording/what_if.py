@@ -65,6 +65,9 @@ class WhatIf:
             self.machine = load_machine(recorded.machine_yaml, f"{recorded.path}:machine.yaml", changes=changes)
         self._check_override()
         self._cycle_time = self._old.cycle_time_us * 1e-6
+        if change.end is None and not recorded.end:
+            reason = f"recording {recorded.path}: holds no states"
+            raise CncError(NOT_RECORDED, reason, f"{NOTHING}; --to says until when")
         self.begin = self._block_at(change.begin)
         self.end = recorded.end if change.end is None else self._end_at(change.end)
         self._commands = commands_by_cycle(recorded.commands, self._old)
@@ -125,13 +128,11 @@ class WhatIf:
         return round(seconds / self._cycle_time)
 
     def _block_at(self, seconds: float) -> int:
-        """The first cycle of the block in which a time lies. Raises CncError 26011, 26154.
+        """The first cycle of the block in which a time lies. Raises CncError 26154.
 
         Before the first block that is recorded nobody knows which commands were those of channels.
         """
         begin, duration = self._recorded.begin * self._cycle_time, self._recorded.end * self._cycle_time
-        if duration == 0.0:
-            raise CncError(NOT_RECORDED, f"recording {self._recorded.path}: holds no states", NOTHING)
         if not begin <= seconds <= duration:
             reason = f"--from {seconds:g} is not within the recorded time {begin:g} ... {duration:g} s"
             raise CncError(TIME_OUTSIDE, reason, NOTHING, value=seconds, limit=duration)

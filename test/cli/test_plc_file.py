@@ -136,6 +136,9 @@ def test_a_condition_that_never_comes_true_is_said(tmp_path: Path) -> None:
         "note: the condition of --record-when was never true; commands and events alone are recorded" in result.output
     )
     assert read_recording(path).states == {}
+    again = CliRunner().invoke(cli.main, ["replay", str(path), "--to", "0.05", "-o", str(tmp_path / "again.mcap")])
+    assert again.exit_code == 0, again.output
+    assert read_recording(tmp_path / "again.mcap").last_cycle == 49
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ import pytest
 import rclpy
 from graph_support import PTP
 from rclpy.serialization import serialize_message
+from ros_support import ros
 
 from cnc_ptp import msg, srv
 from cnc_ptp.machine.wiring import build_unit
@@ -142,28 +143,27 @@ def test_a_fault_in_a_file_is_answered_at_once():
 
 def test_a_waiting_call_costs_no_processor_time():
     """Without a clock no block goes out: the call waits until its deadline. A polled coroutine took all of a core."""
-    process.initialise()
-    plc = PlcBridgeNode(read_machine(PTP))
-    plc.setup()
-    client = rclpy.create_node("asks", enable_rosout=False)
-    executor = process.EventsExecutor()
-    try:
-        for node in (plc, client):
-            executor.add_node(node)
-        couple = client.create_client(srv.Couple, "/y/couple")
-        until(executor, couple.service_is_ready)
-        answer = couple.call_async(COUPLE)
-        begun, used = time.monotonic(), time.process_time()
-        until(executor, answer.done)
-        waited, used = time.monotonic() - begun, time.process_time() - used
-        assert waited > 4.0 and used < 0.3 * waited
-        text = "axis y: couple without an answer for 5 s; no block has gone out, the command was withdrawn"
-        assert (answer.result().error_id, answer.result().message) == (26143, text)
-    finally:
-        for node in (plc, client):
-            node.destroy_node()
-        executor.shutdown()
-        rclpy.try_shutdown()
+    with ros():
+        plc = PlcBridgeNode(read_machine(PTP))
+        plc.setup()
+        client = rclpy.create_node("asks", enable_rosout=False)
+        executor = process.EventsExecutor()
+        try:
+            for node in (plc, client):
+                executor.add_node(node)
+            couple = client.create_client(srv.Couple, "/y/couple")
+            until(executor, couple.service_is_ready)
+            answer = couple.call_async(COUPLE)
+            begun, used = time.monotonic(), time.process_time()
+            until(executor, answer.done)
+            waited, used = time.monotonic() - begun, time.process_time() - used
+            assert waited > 4.0 and used < 0.3 * waited
+            text = "axis y: couple without an answer for 5 s; no block has gone out, the command was withdrawn"
+            assert (answer.result().error_id, answer.result().message) == (26143, text)
+        finally:
+            for node in (plc, client):
+                node.destroy_node()
+            executor.shutdown()
 
 
 def until(executor, condition):

@@ -5,8 +5,8 @@ import struct
 import time
 
 import pytest
-import rclpy
 from rclpy.node import Node
+from ros_support import ros
 
 from cnc_ptp.nodes import process
 
@@ -26,13 +26,12 @@ def announcements(ros_domain, monkeypatch):
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as peer:
         peer.bind(("127.0.0.1", 7400 + 250 * ros_domain + 10 + 2 * PEER))
         peer.settimeout(0.2)
-        process.initialise()
-        node = Node("announced", enable_rosout=False)
-        try:
-            return [*received(peer, 8.0)]
-        finally:
-            node.destroy_node()
-            rclpy.try_shutdown()
+        with ros():
+            node = Node("announced", enable_rosout=False)
+            try:
+                return [*received(peer, 8.0)]
+            finally:
+                node.destroy_node()
 
 
 def received(peer, seconds):

@@ -255,29 +255,28 @@ def test_drives_are_looked_at_in_time_with_any_watchdog_time(milliseconds):
 
 
 def test_an_axis_whose_drive_has_stopped_ends():
-    process.initialise()
-    outside = rclpy.create_node("outside", enable_rosout=False, start_parameter_services=False)
-    axis = AxisNode(read_machine(str(PTP)), "x")
-    axis.setup()
-    writer = outside.create_publisher(msg.DriveStop, DRIVE_STOPS, EVENTS)
-    executor = process.EventsExecutor()
-    executor.add_node(axis)
-    try:
-        for unit in ("y", "x"):
-            assert axis.failure is None
-            writer.publish(msg.DriveStop(unit=unit, first_cycle=300))
-            for _ in range(30 if unit == "y" else 1000):
-                if axis.failure is None:
-                    executor.spin_once(timeout_sec=0.01)
-        assert str(axis.failure) == (
-            "P-ERR-26267 axis x: its drive has stopped on its own in cycle 300, as no setpoint came within the watchdog "
-            "time of 0.2 s; the node ends: it does not know where the drive is"
-        )
-    finally:
-        for node in (axis, outside):
-            node.destroy_node()
-        executor.shutdown()
-        rclpy.try_shutdown()
+    with ros():
+        outside = rclpy.create_node("outside", enable_rosout=False, start_parameter_services=False)
+        axis = AxisNode(read_machine(str(PTP)), "x")
+        axis.setup()
+        writer = outside.create_publisher(msg.DriveStop, DRIVE_STOPS, EVENTS)
+        executor = process.EventsExecutor()
+        executor.add_node(axis)
+        try:
+            for unit in ("y", "x"):
+                assert axis.failure is None
+                writer.publish(msg.DriveStop(unit=unit, first_cycle=300))
+                for _ in range(30 if unit == "y" else 1000):
+                    if axis.failure is None:
+                        executor.spin_once(timeout_sec=0.01)
+            assert str(axis.failure) == (
+                "P-ERR-26267 axis x: its drive has stopped on its own in cycle 300, as no setpoint came within the watchdog "
+                "time of 0.2 s; the node ends: it does not know where the drive is"
+            )
+        finally:
+            for node in (axis, outside):
+                node.destroy_node()
+            executor.shutdown()
 
 
 @pytest.fixture

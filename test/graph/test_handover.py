@@ -1,5 +1,7 @@
 """Blocks between nodes of one process, the pace of a free run, subscriptions that wake nobody."""
 
+import time
+
 import pytest
 from graph_support import small_machine
 from rclpy.node import Node
@@ -10,13 +12,18 @@ from cnc_ptp import msg
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import free_run, process
 from cnc_ptp.nodes.clock import ClockNode
+from cnc_ptp.nodes.composed import unit_nodes
 from cnc_ptp.nodes.free_run import RECORDER_BLOCKS, FreeRunPace
 from cnc_ptp.nodes.handover import Handover
+from cnc_ptp.nodes.monitor import RunMonitor
 from cnc_ptp.nodes.polling_node import PollingNode
-from cnc_ptp.nodes.topics import BLOCKS, RECORDER
+from cnc_ptp.nodes.recorder import RecorderNode
+from cnc_ptp.nodes.supervisor import RunOptions
+from cnc_ptp.nodes.topics import BLOCKS, MONITOR, RECORDER, REPORT
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import AxisBlock, PlcBlock
 from cnc_ptp.protocol.unit import PLC
+from cnc_ptp.recording.recorder_options import RecorderOptions
 from cnc_ptp.wire.ticks import Tick
 
 
@@ -73,13 +80,34 @@ def test_a_late_composed_run_gives_the_executor_a_turn_after_each_tick(tmp_path)
         clock.advance()
         for unit in unit_kinds(machine):
             assert clock._started_at is None
-            handover.ready(unit)
+            handover.ready.add(unit)
             clock.advance()
         clock._started_at -= 1.0  # a hundred ticks are due
         for turn in range(1, 4):
             clock.advance()
             assert len(ticks) == turn and clock.wait_time() == 0.0
         clock.destroy_node()
+
+
+def test_nodes_of_one_process_are_ready_without_a_message(tmp_path):
+    path = small_machine(tmp_path)
+    machine, handover, told = read_machine(str(path)), Handover(), []
+    options = RunOptions(str(path), stay=True)
+    with ros():
+        outside = Node("outside", enable_rosout=False)
+        outside.create_subscription(msg.BlockReport, f"/{REPORT}", told.append, BLOCKS)
+        nodes = [
+            outside,
+            RunMonitor(machine, handover=handover),
+            *unit_nodes(machine, options, handover=handover),
+            RecorderNode(
+                machine, str(tmp_path / "run.mcap"), path.read_text(), options=RecorderOptions(), handover=handover
+            ),
+        ]
+        wanted = {*unit_kinds(machine), MONITOR, RECORDER}
+        end = time.monotonic() + 30.0
+        process.spin(nodes, done=lambda: handover.ready == wanted or time.monotonic() > end, wait=lambda: 0.01)
+    assert (handover.ready, told) == (wanted, [])
 
 
 def test_an_error_of_one_node_does_not_stop_the_others():

@@ -4,13 +4,12 @@ import re
 from pathlib import Path
 
 import pytest
-import rclpy
 from graph_support import MILL
 from rclpy.node import Node
 from rclpy.qos import QoSDurabilityPolicy, QoSHistoryPolicy, QoSReliabilityPolicy
+from ros_support import ros
 
 from cnc_ptp.machine.wiring import unit_kinds
-from cnc_ptp.nodes import process
 from cnc_ptp.nodes.clock import ClockNode
 from cnc_ptp.nodes.composed import unit_nodes
 from cnc_ptp.nodes.supervisor import RunOptions
@@ -72,14 +71,12 @@ def created(ros_domain):
         return call
 
     machine = read_machine(str(MILL))
-    with pytest.MonkeyPatch.context() as patch:
-        process.initialise()
+    with pytest.MonkeyPatch.context() as patch, ros():
         for word in ("create_publisher", "create_subscription"):
             patch.setattr(Node, word, noted(word, getattr(Node, word)))
         nodes = [*unit_nodes(machine, RunOptions(str(MILL))), ClockNode(machine, wait_for=(), free_run=True)]
         for node in nodes:
             node.destroy_node()
-        rclpy.try_shutdown()
     return found
 
 

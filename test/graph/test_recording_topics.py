@@ -99,23 +99,21 @@ def published(recording):
 
 def publish(recording):
     heard, offered = [], {}
-    publishing = subprocess.Popen(
-        command("replay", recording, "--publish", "--inputs", "--rate", "0.5"),
-        stdout=subprocess.PIPE,
-        text=True,
-    )
+    words = command("replay", recording, "--publish", "--inputs", "--rate", "0.5")
     with ros():
         node = Node("test_reader", enable_rosout=False)
         node.create_subscription(msg.Override, "/x/override", heard.append, PLC_INPUT)
         executor = process.EventsExecutor()
         executor.add_node(node)
-        while publishing.poll() is None:
-            executor.spin_once(timeout_sec=0.05)
-            for topic in ("/x/block", "/events", "/x/override", "/x/state"):
-                for info in node.get_publishers_info_by_topic(topic):
-                    offered[topic] = info.qos_profile.durability
+        with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as publishing:
+            while publishing.poll() is None:
+                executor.spin_once(timeout_sec=0.05)
+                for topic in ("/x/block", "/events", "/x/override", "/x/state"):
+                    for info in node.get_publishers_info_by_topic(topic):
+                        offered[topic] = info.qos_profile.durability
+            output = publishing.stdout.read()
         node.destroy_node()
-    return publishing.stdout.read(), offered, [message.percent for message in heard]
+    return output, offered, [message.percent for message in heard]
 
 
 def test_replay_publishes_with_the_recorded_quality_and_says_so(recording, published):

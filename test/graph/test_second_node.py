@@ -125,25 +125,24 @@ def test_a_second_node_during_the_run_is_refused(one_axis, ros_domain, tmp_path)
 
 def test_the_clock_does_not_start_with_two_nodes_of_a_unit_on_two_computers(one_axis):
     """A claim does not reach other computers; their publishers are seen all the same."""
-    process.initialise()
-    clock = ClockNode(read_machine(str(one_axis)))
-    nodes = [rclpy.create_node("x", namespace=place, enable_rosout=False) for place in ("/", "/elsewhere")]
-    for one in nodes:
-        one.create_publisher(msg.AxisBlock, f"/{block_topic('x')}", REMEMBERED_BLOCKS)
-    report = nodes[0].create_publisher(msg.BlockReport, REPORT, BLOCKS)
-    executor = process.EventsExecutor()
-    executor.add_node(clock)
-    try:
-        with pytest.raises(CncError) as refused:
-            for source in ("x", "plc") * 100:
-                report.publish(msg.BlockReport(source=source, first_cycle=-1))
-                executor.spin_once(timeout_sec=0.05)
-                clock.advance()
-    finally:
-        for one in (clock, *nodes):
-            one.destroy_node()
-        executor.shutdown()
-        rclpy.try_shutdown()
+    with ros():
+        clock = ClockNode(read_machine(str(one_axis)))
+        nodes = [rclpy.create_node("x", namespace=place, enable_rosout=False) for place in ("/", "/elsewhere")]
+        for one in nodes:
+            one.create_publisher(msg.AxisBlock, f"/{block_topic('x')}", REMEMBERED_BLOCKS)
+        report = nodes[0].create_publisher(msg.BlockReport, REPORT, BLOCKS)
+        executor = process.EventsExecutor()
+        executor.add_node(clock)
+        try:
+            with pytest.raises(CncError) as refused:
+                for source in ("x", "plc") * 100:
+                    report.publish(msg.BlockReport(source=source, first_cycle=-1))
+                    executor.spin_once(timeout_sec=0.05)
+                    clock.advance()
+        finally:
+            for one in (clock, *nodes):
+                one.destroy_node()
+            executor.shutdown()
     assert str(refused.value) == (
         "P-ERR-26140 2 nodes have the unit 'x' (/elsewhere/x and /x); the clock ends, nothing was started. "
         "End all but one of them"

@@ -86,7 +86,12 @@ def test_a_file_that_was_cut_before_its_first_state(whole: Path, tmp_path: Path)
     nothing = f"P-ERR-26011 recording {cut}: holds no states; nothing was"
     assert words(call("report", cut, "-o", page)) == f"{nothing} drawn"
     assert words(call("report", whole, "--compare", cut, "-o", page)) == f"{nothing} drawn"
-    assert words(call("replay", cut, "--from", 1)) == f"{nothing} computed"
+    assert words(call("replay", cut, "--override", 50)) == (
+        f"P-ERR-26011 recording {cut}: holds no states; nothing was computed; --to says until when"
+    )
+    assert words(call("replay", cut, "--from", 1, "--to", 2)) == (
+        "P-ERR-26154 --from 1 is not within the recorded time 0 ... 0 s; nothing was computed"
+    )
     assert words(call("diff", whole, cut)) == (
         f"P-ERR-26022 the recordings have no cycle in common: {whole} covers 0 s to 2.999 s and {cut} holds no states; "
         "nothing was compared"

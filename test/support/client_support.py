@@ -160,9 +160,11 @@ def connected(make, machine):
     with ros():
         client = make(read_machine(str(machine)))
         client.start()
-        yield client
-        client.destroy_node()
-        client.executor_of_test.shutdown()
+        try:
+            yield client
+        finally:
+            client.destroy_node()
+            client.executor_of_test.shutdown()
 
 
 @contextmanager

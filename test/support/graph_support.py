@@ -6,7 +6,6 @@ import signal
 import subprocess
 import sys
 import time
-from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -23,8 +22,8 @@ PTP = ROOT / "config" / "ptp.yaml"
 TIMEOUT = 150.0
 """Seconds: longer than a run whose nodes are started three times (supervisor.START_TIMEOUTS)."""
 
-LAST_WORDS = 20.0
-"""Seconds in which a run ends that was told to."""
+LAST_WORDS = 60.0
+"""Seconds in which a run that was told to end has ended."""
 
 SHORT_PROGRAM = """%short
 N10 G90 G17 T1 D1 G135 G136 Y80 Z0
@@ -122,9 +121,16 @@ class Running:
     def __exit__(self, _kind, error, _traceback):
         if error and not self.process.stdout.closed:
             self.process.terminate()
-            with suppress(subprocess.TimeoutExpired):
-                error.add_note("The run printed:\n" + self.process.communicate(timeout=LAST_WORDS)[0])
+            error.add_note(f"The run printed:\n{self._rest_of_output()}")
         self.end()
+
+    def _rest_of_output(self):
+        for patience in (LAST_WORDS, 5.0):
+            try:
+                return self.process.communicate(timeout=patience)[0]
+            except subprocess.TimeoutExpired:
+                self.process.kill()
+        return "(a process that it has left behind keeps it)"
 
     def wait_for_nodes(self, count):
         """Waits until `count` node processes live; pid by node."""

@@ -318,14 +318,24 @@ def test_the_command(users, words, status, text):
     ("typed", "status", "text"),
     [
         (f"{PASSWORD}\n", 0, "anna is operator"),
+        (f"{PASSWORD}\r\nmore", 0, "anna is operator"),
         ("", 2, "P-ERR-26246 user anna: a password has 8 to 256 characters, not 0; nothing was changed"),
+        (None, 2, "P-ERR-26246 user anna: a password has 8 to 256 characters, not 0; nothing was changed"),
+        (b"\xfc" * 8, 2, "P-ERR-26246 user anna: the password is not UTF-8; nothing was changed"),
     ],
 )
 def test_a_password_from_a_pipe(users, typed, status, text):
-    words = ["users", "add", "anna", "--role", "operator", "--users", str(users)]
-    result = CliRunner().invoke(main, words, input=typed)
-    assert (result.exit_code, result.output) == (status, f"{text}\n")
-    assert ("anna" in read_users(users)["users"]) is (status == 0)
+    """None: the standard input is closed."""
+    given = typed.encode() if isinstance(typed, str) else typed
+    command = ["users", "add", "anna", "--role", "operator", "--users", str(users)]
+    done = subprocess.run(
+        ["sh", "-c", f'exec "$@"{" <&-" if typed is None else ""}', "sh", sys.executable, "-m", "cnc_ptp", *command],
+        input=given,
+        capture_output=True,
+        check=False,
+    )
+    assert (done.returncode, (done.stdout + done.stderr).decode()) == (status, f"{text}\n")
+    assert bool(Users(str(users)).check("anna", PASSWORD)) is (status == 0)
 
 
 def test_a_password_of_somebody_at_a_terminal(users):

@@ -37,7 +37,7 @@ STOP = 30.0
 def jog(axis: str, direction: str, speed: float, distance: float | None, seconds: float | None) -> int:
     """Jogs until Ctrl-C, a distance (mm, deg) or a time (s), and waits until the axis is at a standstill.
 
-    Status 1 when the axis refuses, is in error, or is not at a standstill in the end.
+    Status 1 when the axis refuses, is in error, or is not at a standstill in the end, and after a suspension.
     """
     with connected() as client, EndRequest() as end:
         client.require_unit(axis, ("axis",))
@@ -78,7 +78,7 @@ class Jogger:
         moved, sent = False, started_at
         deadline = math.inf if seconds is None else started_at + seconds
         while not ended() and not self._refused and not self._blocks.gone and time.monotonic() < deadline:
-            if self._is_stalled(sent):
+            if self._note_stall(sent):
                 return
             sent = time.monotonic()
             self._sender.send(self._velocity)
@@ -88,10 +88,10 @@ class Jogger:
             stopped = view.state != JOGS and (moved or time.monotonic() - started_at > START)
             gone = abs((view.position or 0.0) - start)
             due = end.is_due(gone, abs(view.speed or 0.0), view.cycle)
-            if self._is_stalled(sent) or stopped or due:
+            if self._note_stall(sent) or stopped or due:
                 return
 
-    def _is_stalled(self, sent: float) -> bool:
+    def _note_stall(self, sent: float) -> bool:
         """The machine has ended the jog since then; that this process continues is no reason to move again."""
         self._stalled = time.monotonic() - sent > SILENCE
         if self._stalled:

@@ -29,12 +29,13 @@ def report(
     """Writes the page, of a part if asked for, alone or against another recording; warns of one that was cut off."""
     check_page(output, recording=recording, other_recording=compare)
     lines: list[str] = []
-    whole, recorded = whole_and_part(recording, begin, end, axes)
+    whole = read_own(recording, begin, end)
+    recorded = part_of(whole, begin, end, axes)
     made = datetime.now(tz=UTC).strftime("%Y-%m-%d %H:%M UTC")
     if compare is None:
         page = report_page(recorded, program=program_of(whole), date=made)
     else:
-        _, other = whole_and_part(compare, begin, end, axes)
+        other = part_of(read_own(compare, begin, end), begin, end, axes)
         both = compared(recorded, other, align)
         page, lines = page_of(both, date=made), both.lines(units_of(both.pair))
     write_output(output, page, remains="the recording is unchanged")
@@ -48,13 +49,12 @@ def report(
     return 0
 
 
-def whole_and_part(path: str, begin: float | None, end: float | None, axes: Sequence[str]) -> tuple[Recorded, Recorded]:
-    """Raises CncError 26011 for a part in which no states are."""
-    whole = read_own(path, begin, end)
+def part_of(whole: Recorded, begin: float | None, end: float | None, axes: Sequence[str]) -> Recorded:
+    """Raises CncError 26011 for one in which there are no states."""
     part = selected(whole, begin=begin, end=end, units=axes)
     if not part.states:
-        raise CncError(NOT_RECORDED, f"recording {path}: holds no states", "nothing was drawn")
-    return whole, part
+        raise CncError(NOT_RECORDED, f"recording {whole.path}: holds no states", "nothing was drawn")
+    return part
 
 
 def program_of(recorded: Recorded) -> str:

@@ -19,10 +19,12 @@ NAME = click.argument("name")
 
 
 def given_password() -> str:
-    """Of somebody at a terminal, or from a pipe."""
+    """Of somebody at a terminal, or from a pipe; empty without either."""
+    if sys.stdin is None:
+        return ""
     if sys.stdin.isatty():
         return str(click.prompt("Password", hide_input=True, confirmation_prompt=True))
-    return sys.stdin.readline().rstrip("\n")
+    return sys.stdin.readline().rstrip("\r\n")
 
 
 @click.group("users", cls=Group)
@@ -35,7 +37,7 @@ def web_users() -> None:
 @NAME
 @FILE
 @ROLE
-@click.option("--password", help="Without it: asked for, or the first line that another program gives.")
+@click.option("--password", help="Without it you are asked, or the first line of the standard input is taken.")
 def add(name: str, file: str, role: str, password: str | None) -> None:
     """Add a user, or give one another role and password."""
     from cnc_ptp.web.access.users import add_user

@@ -85,7 +85,7 @@ class UnitPublications:
     def ready(self) -> None:
         """To the clock."""
         if self._handover is not None:
-            self._handover.ready(self._unit.name)
+            self._handover.ready.add(self._unit.name)
         else:
             self._reports.publish(msg.BlockReport(source=self._unit.name, first_cycle=-1))
 

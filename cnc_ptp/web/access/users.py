@@ -134,7 +134,11 @@ def add_user(file: Path, name: str, role: str, password: str) -> None:
     if not SHORTEST_PASSWORD <= len(password) <= LONGEST_PASSWORD:
         reason = f"a password has {SHORTEST_PASSWORD} to {LONGEST_PASSWORD} characters, not {len(password)}"
         raise CncError(BAD_USERS, f"user {name}: {reason}", UNCHANGED)
-    change(file, "users", name, {"role": role, "hash": HASHER.hash(password)})
+    try:
+        text = password.encode()
+    except UnicodeEncodeError:
+        raise CncError(BAD_USERS, f"user {name}: the password is not UTF-8", UNCHANGED) from None
+    change(file, "users", name, {"role": role, "hash": HASHER.hash(text)})
 
 
 def add_token(file: Path, name: str, role: str) -> str:
