@@ -107,7 +107,8 @@ def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> Non
     for line in config.stash.get(MOTION, []):
         terminalreporter.write_line(line)
     for report in terminalreporter.stats.get("rerun", []):
-        reason = getattr(report.longrepr, "reprcrash", report.longrepr)
+        crash = getattr(report.longrepr, "reprcrash", None)
+        reason = f"{crash.path}:{crash.lineno}: {crash.message}" if crash else str(report.longrepr)
         terminalreporter.write_line(f"run again: {report.nodeid} ({report.when}): {reason}")
 
 

@@ -99,11 +99,23 @@ def command(*arguments):
 
 def run(*arguments, expect=0):
     """The finished command; fails when its status is another one than expected or it printed a traceback."""
-    done = subprocess.run(command(*arguments), capture_output=True, text=True, timeout=TIMEOUT, check=False)
+    done = finished(command(*arguments))
     assert done.returncode == expect, done.stdout + done.stderr
     assert "Traceback" not in done.stdout + done.stderr, done.stderr
     assert "number of timers" not in done.stdout, "what rclpy says of its executor is not for the user"
     return done
+
+
+def finished(words):
+    """Fails with what it printed, and where its threads are, when it has not ended after TIMEOUT."""
+    environment = os.environ | {"PYTHONFAULTHANDLER": "1"}
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment) as process:
+        try:
+            output = process.communicate(timeout=TIMEOUT)
+        except subprocess.TimeoutExpired:
+            process.send_signal(signal.SIGABRT)
+            raise AssertionError("\n".join(["it hangs:", *process.communicate(timeout=LAST_WORDS)])) from None
+    return subprocess.CompletedProcess(words, process.returncode, *output)
 
 
 class Running:
