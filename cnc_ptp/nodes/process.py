@@ -217,7 +217,7 @@ def spin(
                 raise_failure(nodes)
     finally:
         executor.shutdown()  # before the nodes: messages that arrive meanwhile would call what is destroyed
-        for node in nodes:
+        for node in reversed(nodes):  # a recorder first: it closes its file before DDS can hold up the end
             node.destroy_node()
         rclpy.try_shutdown()
     raise_failure(nodes)  # of their ends

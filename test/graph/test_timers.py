@@ -68,6 +68,19 @@ def test_they_do_not_keep_a_node_that_is_gone(node):
     assert gone() is None
 
 
+def test_the_last_node_ends_first(node):
+    """In one process that is the recorder."""
+    ended = []
+
+    class Noting(Node):
+        def destroy_node(self):
+            ended.append(self.get_name())
+            super().destroy_node()
+
+    process.spin([Noting(name) for name in ("unit", "recorder")], done=lambda: True)
+    assert ended == ["recorder", "unit"]
+
+
 def test_a_response_that_nobody_hears_is_not_for_the_user(node, recwarn):
     """rclpy warns of it with places in its sources; other warnings are told."""
     told = iter(["failed to send response (timeout): client will not receive response, at /a.cpp:1", "another", ""])
