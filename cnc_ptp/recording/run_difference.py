@@ -67,22 +67,23 @@ def difference(
         cycle_time = machine.cycle_time_us * 1e-6
         rows: list[FieldDifference] = []
         times: dict[str, tuple[float, float]] = {}
-        spans: list[tuple[float, float]] = []
+        spans: dict[str, tuple[float, float]] = {}
         for unit, fields in fields_of(machine).items():
             columns = common_columns(pair, f"/{unit}/state", fields, begin, end)
             if columns is None:
                 continue
             cycles, one, other = columns
-            spans.append((float(cycles[0]) * cycle_time, float(cycles[-1]) * cycle_time))
+            spans[unit] = (float(cycles[0]) * cycle_time, float(cycles[-1]) * cycle_time)
             rows += [field_difference(unit, name, cycles, one[name], other[name]) for name in one]
             if unit in machine.channels:
-                times[unit] = program_times(pair, unit, spans[-1][0], end, cycle_time)
+                times[unit] = program_times(pair, unit, spans[unit][0], end, cycle_time)
         if not rows:
             times_of = " and ".join(f"{name} {span_text(file)}" for name, file in zip(shown, pair, strict=True))
             reason = f"the recordings have no cycle in common{asked_part(begin, end)}: {times_of}"
             raise CncError(NOT_COMPARABLE, reason, "nothing was compared")
-        start, last = min(span[0] for span in spans), max(span[1] for span in spans)
-        return RunDifference(rows, times, start, last, cycle_time, [*notes_of_both(pair, shown, cycle_time, end)])
+        start, last = min(span[0] for span in spans.values()), max(span[1] for span in spans.values())
+        notes = [*notes_of_both(pair, shown, cycle_time, end), *notes_of_units(machine, spans)]
+        return RunDifference(rows, times, start, last, cycle_time, notes)
 
 
 def notes_of_both(
@@ -93,6 +94,17 @@ def notes_of_both(
     if end is None and abs(ends[0] - ends[1]) > cycle_time * 0.5:
         texts = (f"{name} ends at {last:.10g} s" for name, last in zip(names, ends, strict=True))
         yield f"{', '.join(texts)}: what only one has was not compared"
+
+
+def notes_of_units(machine: MachineParameters, spans: Mapping[str, tuple[float, float]]) -> Iterator[str]:
+    """Units that were not compared, or in a shorter time than others."""
+    left_out = [unit for unit in fields_of(machine) if unit not in spans]
+    if left_out:
+        yield f"{', '.join(left_out)}: no states that both have, so not compared"
+    start, last = min(span[0] for span in spans.values()), max(span[1] for span in spans.values())
+    for unit, (first, end) in spans.items():
+        if max(first - start, last - end) > machine.cycle_time_us * 0.5e-6:
+            yield f"{unit}: compared from {first:.10g} s to {end:.10g} s alone"
 
 
 def span_text(file: OpenRecording) -> str:

@@ -133,6 +133,9 @@ class WhatIf:
         Before the first block that is recorded nobody knows which commands were those of channels.
         """
         begin, duration = self._recorded.begin * self._cycle_time, self._recorded.end * self._cycle_time
+        if seconds > duration == 0.0:
+            reason = f"--from {seconds:g} is not possible: the recording holds no states, the run begins at 0"
+            raise CncError(TIME_OUTSIDE, reason, NOTHING, value=seconds, limit=0.0)
         if not begin <= seconds <= duration:
             reason = f"--from {seconds:g} is not within the recorded time {begin:g} ... {duration:g} s"
             raise CncError(TIME_OUTSIDE, reason, NOTHING, value=seconds, limit=duration)

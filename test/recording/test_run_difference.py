@@ -86,17 +86,35 @@ def test_a_file_that_was_cut_before_its_first_state(whole: Path, tmp_path: Path)
     nothing = f"P-ERR-26011 recording {cut}: holds no states; nothing was"
     assert words(call("report", cut, "-o", page)) == f"{nothing} drawn"
     assert words(call("report", whole, "--compare", cut, "-o", page)) == f"{nothing} drawn"
-    assert words(call("replay", cut, "--override", 50)) == (
+    again = tmp_path / "again.mcap"
+    assert words(call("replay", cut, "--override", 50, "-o", again)) == (
         f"P-ERR-26011 recording {cut}: holds no states; nothing was computed; --to says until when"
     )
-    assert words(call("replay", cut, "--from", 1, "--to", 2)) == (
-        "P-ERR-26154 --from 1 is not within the recorded time 0 ... 0 s; nothing was computed"
+    assert words(call("replay", cut, "--override", 50, "--to", 1)) == (
+        f"P-ERR-26011 recording {cut}: holds no states to compare with; nothing was computed; give --to and --output alone"
     )
+    assert words(call("replay", cut, "--from", 1, "--to", 2, "-o", again)) == (
+        "P-ERR-26154 --from 1 is not possible: the recording holds no states, the run begins at 0; nothing was computed"
+    )
+    assert not again.exists()
     assert words(call("diff", whole, cut)) == (
         f"P-ERR-26022 the recordings have no cycle in common: {whole} covers 0 s to 2.999 s and {cut} holds no states; "
         "nothing was compared"
     )
     assert not page.exists()
+
+
+def test_units_that_only_one_has_are_named(whole: Path, tmp_path: Path) -> None:
+    index = McapIndex(whole)
+    first, second = [chunk for chunk in index.chunks if index.ids_of("/x/state") <= set(chunk.channels)][:2]
+    index.close()
+    cut = tmp_path / "cut.mcap"
+    cut.write_bytes(whole.read_bytes()[: first.offset + first.length])
+    assert list(difference(whole, cut).notes)[2:] == ["y, z, c: no states that both have, so not compared"]
+    cut.write_bytes(whole.read_bytes()[: second.offset + second.length])
+    assert list(difference(whole, cut).notes)[2:] == [
+        f"{unit}: compared from 0 s to 0.999 s alone" for unit in ("y", "z", "c")
+    ]
 
 
 def test_a_cut_file_has_one_end(whole: Path, tmp_path: Path) -> None:

@@ -55,7 +55,7 @@ def test_roles(users):
         assert refused["number"] == 26235
         assert (await otto.command("x", "move_absolute", target=1))["ok"]
         assert ("otto", "x", "move_absolute") in here.hub.face.users
-        events = [await otto.wait_for("event", lambda event: event["source"] == "web") for _ in range(3)]
+        events = [await otto.wait_for("event", lambda event: event["text"].startswith("otto")) for _ in range(3)]
         assert [event["text"] for event in events] == [
             f"otto (page {otto.hello['page']}): take_command",
             "otto: axis x: write_parameter, P-ERR-26235",
@@ -352,6 +352,15 @@ def test_a_password_of_somebody_at_a_terminal(users):
     os.close(own)
     assert asking.returncode == 0 and PASSWORD not in seen
     assert read_users(users)["users"]["anna"].role == "viewer"
+
+
+@pytest.mark.parametrize("words", [["add", "--password", PASSWORD], ["token"]], ids=lambda words: words[0])
+def test_a_folder_that_is_not_there(tmp_path, words):
+    file = tmp_path / "none" / "users.yaml"
+    result = CliRunner().invoke(main, ["users", *words, "anna", "--role", "viewer", "--users", str(file)])
+    assert result.exit_code == 2
+    text = f"users file {file} cannot be written: No such file or directory; nothing was changed"
+    assert result.output == f"P-ERR-26246 {text}\n"
 
 
 def test_removing_nobody(users):

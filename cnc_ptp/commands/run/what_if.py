@@ -13,6 +13,7 @@ from tempfile import TemporaryDirectory
 from cnc_ptp.channel.program_check import ProgramCheck
 from cnc_ptp.commands.look.diff import check_diff_page, show_difference
 from cnc_ptp.commands.run.progress import RunProgress
+from cnc_ptp.errors import CncError
 from cnc_ptp.machine.program_files import read_file, read_program
 from cnc_ptp.machine.run_entries import load_arguments, program_search
 from cnc_ptp.machine.wiring import unit_kinds
@@ -26,6 +27,7 @@ from cnc_ptp.recording.origin import WHAT_IF_OF, WITHOUT, origin
 from cnc_ptp.recording.overwriting import check_recording
 from cnc_ptp.recording.parts import describe_file
 from cnc_ptp.recording.run_inputs import RunInputs
+from cnc_ptp.recording.selection import NOT_RECORDED
 from cnc_ptp.recording.what_if import Change, WhatIf
 from cnc_ptp.recording.writer import Recording
 
@@ -52,6 +54,9 @@ def what_if(
     with nothing_collected(), RunInputs(recording) as recorded, TemporaryDirectory() as folder:
         change = Change(begin, end, parameters, override, load_of(recorded, program), entries_of(recorded, commands))
         run = WhatIf(recorded, change)
+        if not recorded.end and (diff or page is not None or output is None):
+            reason = f"recording {recording}: holds no states to compare with"
+            raise CncError(NOT_RECORDED, reason, "nothing was computed; give --to and --output alone")
         path = Path(output or Path(folder) / "what_if.mcap")
         if path.exists():
             with in_place_of(path) as part:

@@ -167,7 +167,7 @@ def require_name(name: str) -> None:
 
 
 def change(file: Path, kind: str, name: str, entry: dict[str, str] | None) -> None:
-    """Writes the file again, whole or not at all, readable by its owner alone."""
+    """Writes the file again, whole or not at all, readable by its owner alone. Raises CncError 26246."""
     known = read_users(file) if file.exists() else {"users": {}, "tokens": {}}
     content: dict[str, dict[str, Any]] = {
         each: {user.name: {"role": user.role, "hash": user.hash} for user in users.values()}
@@ -176,7 +176,11 @@ def change(file: Path, kind: str, name: str, entry: dict[str, str] | None) -> No
     content[kind].pop(name, None)
     if entry is not None:
         content[kind][name] = entry
-    number, other = tempfile.mkstemp(dir=file.resolve().parent, prefix=".users-")  # mode 600
+    try:
+        number, other = tempfile.mkstemp(dir=file.resolve().parent, prefix=".users-")  # mode 600
+    except OSError as error:
+        reason = f"users file {file} cannot be written: {error.strerror}"
+        raise CncError(BAD_USERS, reason, UNCHANGED) from None
     try:
         with os.fdopen(number, "w", encoding="utf-8") as stream:
             yaml.safe_dump(content, stream, sort_keys=True)
