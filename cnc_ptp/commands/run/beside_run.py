@@ -9,11 +9,13 @@ import subprocess
 import sys
 from types import TracebackType
 
+from cnc_ptp.protocol.notes import Note
 from cnc_ptp.ros_arguments import ros_arguments
 from cnc_ptp.web.options import WebOptions, listen, require_packages
 
 NICENESS = 10
 """While it starts beside a graph that has just begun."""
+PAGES_ENDED = 26211
 END_TIME = 8.0
 """Seconds that it may take to end."""
 
@@ -44,6 +46,15 @@ class WebBesideRun:
         )
         self._socket.close()
         self._socket = None
+
+    @property
+    def notes(self) -> list[Note]:
+        """That its process has ended on its own."""
+        status = None if self._process is None else self._process.poll()
+        if status is None:
+            return []
+        text = f"web: the process of the pages has ended (status {status})"
+        return [Note(PAGES_ENDED, f"{text}; the machine continues, `cnc_ptp web` serves pages of it again")]
 
     def __enter__(self) -> WebBesideRun:
         return self

@@ -81,6 +81,8 @@ def run(
         def show(monitor: RunMonitor) -> None:
             if monitor.cycle:
                 pages.begin()
+            for note in pages.notes:
+                monitor.notes.add(note)
             progress.tell(monitor.notes)
             if progress.due:
                 progress.show(monitor.views())
