@@ -23,6 +23,7 @@ from campaign.witness import Witness
 from cnc_ptp.errors import CncError
 from cnc_ptp.nodes.forked import SERVER_ENDED
 from cnc_ptp.parameters import read_machine
+from cnc_ptp.recording.node_figures import LATENESS_MAX
 from cnc_ptp.recording.reader import Recorded, read_recording
 
 KILL, TERM, HOLD = "SIGKILL", "SIGTERM", "SIGSTOP"
@@ -117,9 +118,7 @@ def run(fault: Fault, folder: Path, *, domain: int) -> Row:
         row.outcome = await_end(graph, fault)
         row.seconds = round(time.monotonic() - happened, 2)
         row.problems += left_behind(graph, fault, row.outcome)
-        computed = happened - begin - lateness_before(fault, graph.lateness)
-        written = int(computed * 1e6 / machine.cycle_time_us)
-        whole = check_recording(row, case, recording, written)
+        whole = check_recording(row, case, recording, happened - begin, graph.lateness)
         if witness is not None and not (whole and row.outcome == "survived"):
             row.problems += (f"seen: {text}" for text in motion.seen_problems(witness.seen(), machine))
     return row
@@ -128,6 +127,12 @@ def run(fault: Fault, folder: Path, *, domain: int) -> Row:
 def lateness_before(fault: Fault, largest: float) -> float:
     """Seconds by which the machine may have been behind the clock when the fault came; a hold makes it late itself."""
     return max(0.0, largest - fault.hold)
+
+
+def recorded_lateness(recorded: Recorded) -> float:
+    """The largest one of its nodes, s; a killed supervisor tells none."""
+    told = (each.values.get(LATENESS_MAX, "0") for each in recorded.diagnostics)
+    return max((float(text) for text in told), default=0.0) / 1e3
 
 
 def strike(process: psutil.Process, fault: Fault) -> None:
@@ -189,8 +194,11 @@ def names(fault: Fault, graph: Graph) -> list[str]:
     )
 
 
-def check_recording(row: Row, case: Case, recording: Path, written: int) -> bool:
-    """Readable to the last block, all at rest on ramps within limits, nothing torn apart. True for a whole one."""
+def check_recording(row: Row, case: Case, recording: Path, moment: float, lateness: float) -> bool:
+    """Readable to the last block, all at rest on ramps within limits, nothing torn apart. True for a whole one.
+
+    `moment` of the fault, `lateness` that the run has told, s.
+    """
     machine, fault = read_machine(str(case.machine)), row.fault
     try:
         recorded = read_recording(recording)
@@ -198,6 +206,8 @@ def check_recording(row: Row, case: Case, recording: Path, written: int) -> bool
         row.problems.append(f"the recording is not readable: {error}")
         return False
     row.cycles = recorded.last_cycle + 1
+    computed = moment - lateness_before(fault, max(lateness, recorded_lateness(recorded)))
+    written = int(computed * 1e6 / machine.cycle_time_us)
     cut = fault.node == "recorder" and fault.signal in (KILL, HOLD)
     unsupervised = fault.node == SUPERVISOR and fault.signal == KILL
     if not recorded.complete and not cut and not unsupervised:

@@ -1,6 +1,7 @@
 """The checks of the campaign find what they are to find, in recordings that were made for it."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -22,7 +23,7 @@ from campaign.table import summary, table
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import Event, Severity
 from cnc_ptp.recording.node_figures import LATENESS_MAX, LOST_BLOCKS
-from cnc_ptp.recording.reader import DriveStop, Recorded
+from cnc_ptp.recording.reader import Diagnostic, DriveStop, Recorded
 
 MACHINE = read_machine(str(Path(__file__).parents[2] / "config" / "gantry.yaml"))
 CYCLE = 1e-3
@@ -239,6 +240,16 @@ def test_what_a_run_has_told_of_itself(tmp_path):
     assert kills.lateness_before(Fault("program", "channel", HOLD, 4.665, 11.1), 3.39) == 0.0
     graph._log.write_text("machine time 7.220 s\nfailed: P-ERR-26104 node 'x'\n")
     assert not graph.summed_up and graph.lateness == 0.0
+
+
+def test_the_lateness_of_a_run_whose_supervisor_is_dead(tmp_path):
+    """Seed 44, number 354: the recording ended 4.9 s before the moment of the fault, and nobody said how late it was."""
+    told = [
+        Diagnostic(n, unit, {LATENESS_MAX: text}) for n, (unit, text) in enumerate([("x", "12.5"), ("s", "4903.1")])
+    ]
+    recorded = replace(Recorded(tmp_path), diagnostics=[*told, Diagnostic(3, "clock", {})])
+    assert kills.recorded_lateness(recorded) == pytest.approx(4.9031)
+    assert kills.recorded_lateness(Recorded(tmp_path)) == 0.0
 
 
 def test_shared_memory_that_another_program_takes_away_is_not_left_behind(monkeypatch):
