@@ -82,7 +82,7 @@ def difference(
             reason = f"the recordings have no cycle in common{asked_part(begin, end)}: {times_of}"
             raise CncError(NOT_COMPARABLE, reason, "nothing was compared")
         start, last = min(span[0] for span in spans.values()), max(span[1] for span in spans.values())
-        notes = [*notes_of_both(pair, shown, cycle_time, end), *notes_of_units(machine, spans)]
+        notes = [*notes_of_both(pair, shown, cycle_time, end), *notes_of_units(machine, spans, start, last)]
         return RunDifference(rows, times, start, last, cycle_time, notes)
 
 
@@ -96,12 +96,13 @@ def notes_of_both(
         yield f"{', '.join(texts)}: what only one has was not compared"
 
 
-def notes_of_units(machine: MachineParameters, spans: Mapping[str, tuple[float, float]]) -> Iterator[str]:
-    """Units that were not compared, or in a shorter time than others."""
+def notes_of_units(
+    machine: MachineParameters, spans: Mapping[str, tuple[float, float]], start: float, last: float
+) -> Iterator[str]:
+    """Units that were not compared, or in a shorter time than from `start` to `last` (s)."""
     left_out = [unit for unit in fields_of(machine) if unit not in spans]
     if left_out:
         yield f"{', '.join(left_out)}: no states that both have, so not compared"
-    start, last = min(span[0] for span in spans.values()), max(span[1] for span in spans.values())
     for unit, (first, end) in spans.items():
         if max(first - start, last - end) > machine.cycle_time_us * 0.5e-6:
             yield f"{unit}: compared from {first:.10g} s to {end:.10g} s alone"

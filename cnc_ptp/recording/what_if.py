@@ -114,9 +114,11 @@ class WhatIf:
     def _check_override(self) -> None:
         """Raises CncError 26153 for one that a channel refuses."""
         percent = self._change.override
+        if percent is None:
+            return
         for name, channel in self.machine.channels.items():
             limit = channel.max_override_percent
-            if percent is not None and not 0.0 <= percent <= limit:
+            if not 0.0 <= percent <= limit:
                 reason = f"--override {percent:g} is not within 0 ... {limit:g} of {name} (P-CHAN-00056)"
                 raise CncError(BAD_CHANGE, reason, NOTHING, value=percent, limit=limit)
 

@@ -177,10 +177,15 @@ def change(file: Path, kind: str, name: str, entry: dict[str, str] | None) -> No
     if entry is not None:
         content[kind][name] = entry
     try:
-        number, other = tempfile.mkstemp(dir=file.resolve().parent, prefix=".users-")  # mode 600
+        write_whole(file, content)
     except OSError as error:
         reason = f"users file {file} cannot be written: {error.strerror}"
         raise CncError(BAD_USERS, reason, UNCHANGED) from None
+
+
+def write_whole(file: Path, content: dict[str, dict[str, Any]]) -> None:
+    """Or not at all."""
+    number, other = tempfile.mkstemp(dir=file.resolve().parent, prefix=".users-")  # mode 600
     try:
         with os.fdopen(number, "w", encoding="utf-8") as stream:
             yaml.safe_dump(content, stream, sort_keys=True)
