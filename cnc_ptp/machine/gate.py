@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Iterable
 
 from cnc_ptp.machine.wiring import Inputs
 from cnc_ptp.protocol.blocks import CycleBlock, CycleTick
@@ -89,11 +90,14 @@ class BlockGate:
             missing += [name for name in self._feedback if before not in self._blocks[name]]
         return missing
 
-    def waits_for_more(self) -> bool:
-        """Something of the next tick has come, and something is missing."""
+    def waits_for_others(self, sources: Iterable[str]) -> bool:
+        """All of `sources` have come for the next tick, and something else is missing; False once one is dropped."""
         if self._closed or self._open is not None:
-            return not self._closed
-        return (bool(self._ticks) or any(self._blocks[name] for name in self._upstream)) and bool(self.missing())
+            return False
+        for source in sources:
+            if not (self._ticks if source == CLOCK else self._blocks.get(source)):
+                return False
+        return bool(self.missing())
 
     def skipped(self) -> list[str]:
         """Of the missing sources, those that have sent a later block already: the needed one is lost."""

@@ -6,7 +6,7 @@ import sys
 import time
 from collections.abc import Iterable
 from functools import partial
-from math import isfinite
+from math import inf, isfinite
 from typing import Any
 
 import click
@@ -109,7 +109,7 @@ class PlcBridgeNode(UnitNode):
                 **{name: spindle.number for name, spindle in machine.spindles.items()},
             },
         )
-        self.input_period = INPUT_PERIOD if self._free_run else 0.0
+        self.input_period = INPUT_PERIOD if self._free_run else inf  # in real time before each block
         self._jogs = JogTopics(self._warn)
         self._joints_due = 0
         self._answers: CouplingServices | None = None
@@ -144,6 +144,11 @@ class PlcBridgeNode(UnitNode):
             message_type = PLC_TOPICS[self._kinds[unit]][name]
             self.create_subscription(message_type, topic, partial(series[name], unit), plc_quality(message_type))
 
+    def before_block(self) -> None:
+        """Overrides and the like that have come count for this block."""
+        if not self._free_run:
+            self.take_written_inputs()
+
     @property
     def plc(self) -> PlcUnit:
         """The unit."""
@@ -152,6 +157,7 @@ class PlcBridgeNode(UnitNode):
 
     def _watch_topics(self) -> None:
         """One timer for all of them: the executor warns of many."""
+        self.take_inputs()
         self.look()
         self._watch_life_sign()
         self._values.watch()

@@ -22,6 +22,8 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.wire.unreadable import UNREADABLE_MESSAGE
 
 Received = Callable[[bytes], None]
+UNWRITTEN_PERIOD = 0.1
+"""Seconds between two looks at inputs that nobody writes."""
 KNOWN_TYPES = {of.value for of in Parameter.Type}
 
 
@@ -32,6 +34,9 @@ class PollingNode(Node):
         self._polled: dict[Subscription[Any], Received] = {}
         self._inputs_polled: dict[Subscription[Any], Received] = {}
         self._inputs_due = 0.0
+        self._written: dict[Subscription[Any], Received] = {}
+        """Of the inputs, those that had a publisher lately."""
+        self._all_inputs_due = 0.0
         self.input_period = 0.0
         """Seconds between two looks for inputs; 0: at each look, infinite: only with `take_inputs`."""
         self._unreadable: set[str] = set()
@@ -96,6 +101,15 @@ class PollingNode(Node):
     def take_inputs(self) -> None:
         """The same for those of `poll_input`, now."""
         take_all(self._inputs_polled)
+
+    def take_written_inputs(self) -> None:
+        """As `take_inputs`; topics without a publisher, most of a machine's, are looked at each UNWRITTEN_PERIOD."""
+        if (now := time.monotonic()) < self._all_inputs_due:
+            take_all(self._written)
+            return
+        self._all_inputs_due = now + UNWRITTEN_PERIOD
+        self.take_inputs()
+        self._written = {each: take for each, take in self._inputs_polled.items() if each.get_publisher_count()}
 
 
 def of_known_types(set_parameters: Callable[[Any, Any], Any], request: Any, response: Any) -> Any:

@@ -11,9 +11,9 @@ import warnings
 from collections.abc import Callable, Iterable, MutableMapping, Sequence, Set
 from contextlib import redirect_stdout, suppress
 from io import StringIO
+from math import inf
 from pathlib import Path
 from typing import Any
-from weakref import WeakKeyDictionary, WeakSet
 
 import rclpy
 from rclpy.clock import Clock
@@ -139,38 +139,32 @@ class SteadyTimer:
     """
 
     def __init__(self, node: Node, period: float, call: Callable[[], None]) -> None:
-        self._period, self._call, self._called = period, call, time.monotonic()
-        self._timer = node.create_timer(period, self._on_time, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self._late, self._call = LATE_PERIODS * period, call
+        self.late_at = time.monotonic() + self._late
+        """By the clock that cannot be set; infinite once it is cancelled."""
+        self._timer = node.create_timer(period, self.on_time, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
-    def _on_time(self) -> None:
-        self._called = time.monotonic()
-        self._call()
-
-    def left(self) -> float:
-        """Seconds until it is late."""
-        return self._called + LATE_PERIODS * self._period - time.monotonic()
-
-    def call_if_late(self) -> None:
-        if self.left() < 0.0 and not self.cancelled:
-            self._on_time()
-
-    @property
-    def cancelled(self) -> bool:
-        return self._timer.is_canceled()
+    def on_time(self) -> None:
+        if self.late_at < inf:
+            self.late_at = time.monotonic() + self._late
+            self._call()
 
     def cancel(self) -> None:
+        self.late_at = inf
         self._timer.cancel()
-
-
-_timers: WeakKeyDictionary[Node, WeakSet[SteadyTimer]] = WeakKeyDictionary()
-"""Timers call methods of their nodes, and so hold them; each node holds its own."""
 
 
 def timer(node: Node, period: float, call: Callable[[], None]) -> SteadyTimer:
     """Calls each `period` (s), whatever becomes of the wall clock."""
     made = SteadyTimer(node, period, call)
-    _timers.setdefault(node, WeakSet()).add(made)
+    timers_of(node).append(made)
     return made
+
+
+def timers_of(node: Node) -> list[SteadyTimer]:
+    """Kept by the node itself: they call it, and would keep it elsewhere."""
+    timers: list[SteadyTimer] = node.__dict__.setdefault("steady_timers", [])
+    return timers
 
 
 def is_read(node: Node, publisher: Publisher[Any], names: Set[str]) -> bool:
@@ -208,12 +202,13 @@ def spin(
         take_nodes(executor, nodes)
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", UNHEARD_RESPONSE, RuntimeWarning)
+            timers = [timers_of(node) for node in nodes]  # these lists take later ones
             while not done():
-                timers = [each for node in nodes for each in _timers.get(node, ()) if not each.cancelled]
-                executor.spin_once(timeout_sec=max(0.0, min([wait(), *(each.left() for each in timers)])))
+                late_at = min([each.late_at for of_node in timers for each in of_node], default=inf)
+                executor.spin_once(timeout_sec=max(0.0, min(wait(), late_at - time.monotonic())))
                 after()
-                for each in timers:
-                    each.call_if_late()
+                if late_at < time.monotonic():
+                    call_late(timers)
                 raise_failure(nodes)
     finally:
         executor.shutdown()  # before the nodes: messages that arrive meanwhile would call what is destroyed
@@ -221,6 +216,14 @@ def spin(
             node.destroy_node()
         rclpy.try_shutdown()
     raise_failure(nodes)  # of their ends
+
+
+def call_late(timers: Iterable[Iterable[SteadyTimer]]) -> None:
+    """Calls for the executor where it does not."""
+    for of_node in timers:
+        for each in tuple(of_node):
+            if each.late_at < time.monotonic():
+                each.on_time()
 
 
 def raise_failure(nodes: Sequence[Node]) -> None:

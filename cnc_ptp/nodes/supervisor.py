@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from multiprocessing.connection import wait
 from multiprocessing.process import BaseProcess
 from typing import Any
 
@@ -212,6 +213,8 @@ class Supervisor:
         return bool(self._signals)
 
     def _note_deaths(self) -> None:
+        if not wait([child.sentinel for name, child in self._processes.items() if name not in self._dead], 0.0):
+            return  # one system call, where each exit status needs its own
         for name, child in self._processes.items():
             status = child.exitcode
             if status is None or name in self._dead or (name == CLOCK and status == 0):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from long_support import examples
@@ -9,6 +10,7 @@ from long_support import examples
 from cnc_ptp.machine.gate import BlockGate
 from cnc_ptp.machine.wiring import Inputs
 from cnc_ptp.protocol.blocks import ChannelBlock, CycleBlock, CycleTick, PlcBlock
+from cnc_ptp.protocol.unit import CLOCK
 
 INPUTS = Inputs(upstream=("plc",), feedback=("x", "y"))
 
@@ -134,3 +136,46 @@ def test_blocks_of_strangers_are_ignored() -> None:
     gate = BlockGate(INPUTS)
     gate.add_block("z", ChannelBlock(0, 10))
     assert gate.sources == ("plc", "x", "y") and gate.duplicates == 0
+
+
+@pytest.mark.parametrize(
+    ("arrivals", "waking", "waits"),
+    [
+        ([], {"plc"}, False),
+        ([("tick", 10), ("tick", 20), ("tick", 30)], {"plc"}, False),  # late: what wakes it is still to come
+        ([("tick", 10), ("plc", 10)], {"plc"}, True),
+        ([("tick", 10), ("plc", 10), ("x", 0)], {"plc"}, True),
+        ([("tick", 10), ("plc", 10), ("x", 0), ("y", 0)], {"plc"}, False),  # nothing is missing
+        ([("plc", 10), ("x", 0), ("y", 0)], {"plc"}, True),
+        ([("x", 0), ("y", 0)], {CLOCK}, False),
+        ([("tick", 10)], {CLOCK}, True),
+        ([("plc", 10), ("x", 0)], {"x", "y"}, False),
+        ([("plc", 10), ("x", 0), ("y", 0)], {"x", "y"}, True),
+    ],
+)
+def test_a_node_looks_for_the_rest_once_what_wakes_it_has_come(
+    arrivals: list[tuple[str, int]], waking: set[str], waits: bool
+) -> None:
+    gate = gate_with(("tick", 0), ("plc", 0))
+    take(gate)
+    for source, cycle in arrivals:
+        if source == "tick":
+            gate.add_tick(CycleTick(cycle, 10))
+        else:
+            gate.add_block(source, block(cycle))
+    assert gate.waits_for_others(waking) is waits
+
+
+def test_a_node_does_not_look_for_the_rest_of_what_it_will_not_be_woken_for() -> None:
+    gate = gate_with(("tick", 0), ("plc", 0))
+    assert gate.begin() is not None and not gate.waits_for_others({"plc"})  # open: the block of a master wakes it
+    gate.follow("m")
+    assert gate.complete() is None and not gate.waits_for_others({"plc"})
+    gate.follow(None)
+    assert gate.complete() is not None
+    gate.add_block("plc", block(10))
+    assert gate.waits_for_others({"plc"})
+    gate.drop("plc")
+    assert not gate.waits_for_others({"plc"})
+    gate.close()
+    assert not gate.waits_for_others({"x"})

@@ -117,6 +117,8 @@ class UnitNode(PollingNode):
         self._scheduled_ns: dict[int, int] = {}
         self._told_twice: set[str] = set()
         self._masters: set[str] = set()
+        self._waking: set[str] = set()
+        """Sources whose messages wake the node; none where it is told of all."""
         self._looking: process.SteadyTimer | None = None
         self._free_run = free_run
         self._handover = handover
@@ -187,15 +189,15 @@ class UnitNode(PollingNode):
             for source in self._gate.sources:
                 self._handover.on_block(source, partial(self._take_block, source), self.look)
             return
-        waking = {self._inputs.upstream[-1] if self._inputs.upstream else CLOCK}
+        self._waking = {self._inputs.upstream[-1] if self._inputs.upstream else CLOCK}
         if self._free_run and not self._inputs.upstream:
-            waking = {*self._inputs.feedback} or {CLOCK}
+            self._waking = {*self._inputs.feedback} or {CLOCK}
         take_tick = chain(decode_tick, self._take_tick)
-        self._needed = [self._subscribe(msg.CycleTick, TICK, take_tick, wakes=CLOCK in waking)]
+        self._needed = [self._subscribe(msg.CycleTick, TICK, take_tick, wakes=CLOCK in self._waking)]
         for source in self._gate.sources:
             take = chain(self._decoder(source), partial(self._take_block, source))
             block_type = BLOCK_TYPES[self._kinds[source]]
-            self._needed.append(self._subscribe(block_type, block_topic(source), take, wakes=source in waking))
+            self._needed.append(self._subscribe(block_type, block_topic(source), take, wakes=source in self._waking))
 
     def _decoder(self, unit: str) -> Callable[[bytes], CycleBlock]:
         """Of the blocks of a unit; raises CncError 26184 for what is none of this machine."""
@@ -243,11 +245,16 @@ class UnitNode(PollingNode):
 
     def wait_time(self) -> float:
         """Seconds until the node looks on its own: it was woken, and another message of the block is still to come."""
-        return SOON if self._handover is None and self._gate.waits_for_more() else process.SPIN_TIMEOUT
+        return SOON if self._waits_for_others else process.SPIN_TIMEOUT
 
     def after_wait(self) -> None:
-        if self._handover is None and self._gate.waits_for_more():
+        if self._waits_for_others:
             self.look()
+
+    @property
+    def _waits_for_others(self) -> bool:
+        """A node that is late has ticks enough: it must not look for what will wake it, that makes it later still."""
+        return self._handover is None and self._gate.waits_for_others(self._waking)
 
     def _take_tick(self, message: Tick) -> None:
         if self._alone:
@@ -368,6 +375,8 @@ class UnitNode(PollingNode):
             self._lose(source, f"block {self._gate.next_cycle} of '{source}' is missing, a later one came")
         while self.failure is None:
             if not self._gate.opened:
+                if not self._gate.missing():
+                    self.before_block()
                 begun = self._gate.begin()
                 if begun is None:
                     return
@@ -433,6 +442,9 @@ class UnitNode(PollingNode):
 
     def complete_commands(self, block: PlcBlock) -> None:
         """For subclasses: adds to commands of the PLC what does not travel in its block."""
+
+    def before_block(self) -> None:
+        """For subclasses: takes what the next block must act on, besides its blocks."""
 
     def after_block(self, block: CycleBlock) -> None:
         """For subclasses: publishes more of a block."""
