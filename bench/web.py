@@ -1,5 +1,6 @@
-"""The web face on the mill of 8 processes in real time, with pages in headless Chromium: scopes, buttons, positions,
-ends of jogs. The browsers run at nice 19: people have them on another computer.
+"""The web face in real time, with pages in headless Chromium: scopes on the mill of 8 processes; buttons, positions and
+ends of jogs on the mill in one process. The browsers run at nice 19: people have them on another computer. Beside 8
+processes two cores leave them too little to press a hundred buttons.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import tempfile
 import time
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from math import nan
 from multiprocessing import get_context
@@ -94,12 +96,12 @@ class WebRun:
     """A second, on a page."""
     reactions: list[float] = field(default_factory=list)
     ends: dict[str, list[End]] = field(default_factory=dict)
-    blocks_lost: float = nan
+    blocks_lost: float = 0.0
     missing: int = 0
 
 
 def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
-    """All in one run of the graph."""
+    """All in two runs of the graph."""
     if reason := why_no_browser():
         raise RuntimeError(reason)
     show(f"{effort.graph_seconds:.0f} s of {PAGES} scopes, then {effort.scaled(PRESSES, least=2)} jogs and other ends")
@@ -111,7 +113,7 @@ def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
     lateness = "block lateness of the latest node meanwhile, p99"
     yield Figure(lateness, run.lateness_p99, "ms", goal=10.0, at_most=True)
     yield Figure("web meanwhile", run.core, "cores", goal=0.35, at_most=True)
-    yield Figure("blocks lost in the whole run", run.blocks_lost, "", goal=0.0, at_most=True)
+    yield Figure("blocks lost in both runs", run.blocks_lost, "", goal=0.0, at_most=True)
     yield Figure("samples missing in the recording", run.missing, "", goal=0.0, at_most=True)
     yield Figure("positions that a page shows", run.positions, "1/s", goal=20.0)
     yield Figure("jog button to first changed setpoint, median", median(run.reactions), "ms")
@@ -127,32 +129,58 @@ def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
 
 
 def measure(effort: Effort) -> WebRun:
-    """Starts and ends the graph of the mill with its pages."""
     import rclpy
+    from playwright.sync_api import sync_playwright
 
     from cnc_ptp.nodes import process
 
+    run = WebRun()
+    try:
+        with mill(run) as (address, graph), sync_playwright() as playwright:
+            server = next(child for child in graph.children() if "--listening" in child.cmdline())
+            scopes(playwright, address, server, effort.graph_seconds, run)
+        with mill(run, "--composed") as (address, _), sync_playwright() as playwright:
+            process.initialise()
+            jogs(playwright, address, effort, run)
+    finally:
+        rclpy.try_shutdown()
+    return run
+
+
+@contextmanager
+def mill(run: WebRun, *words: str) -> Iterator[tuple[str, psutil.Process]]:
+    """The graph of the mill: address of its pages, process. What it has lost counts for `run`."""
     port = free_port()
     with tempfile.TemporaryDirectory() as folder:
         record, told = str(Path(folder) / "run.mcap"), Path(folder) / "told"
         command = [sys.executable, "-m", "cnc_ptp", "run", MACHINE, "--stay", "--web", str(port), "--record", record]
         with told.open("w") as output:
-            graph = subprocess.Popen(command, stdout=output, stderr=subprocess.STDOUT, cwd=folder)
+            graph = subprocess.Popen([*command, *words], stdout=output, stderr=subprocess.STDOUT, cwd=folder)
         try:
             wait_for_pages(graph, told)
-            os.nice(NICENESS)
-            process.initialise()
-            run = session(port, psutil.Process(graph.pid), effort)
+            with niced():
+                yield f"http://127.0.0.1:{port}/", psutil.Process(graph.pid)
         except Exception as error:
             raise RuntimeError(f"{error}; the graph has said: {told.read_text()}") from error
         finally:
             graph.terminate()
             graph.wait(LONGEST_START)
-            rclpy.try_shutdown()
-        if found := re.search(r"lost (\d+), computed twice", told.read_text()):
-            run.blocks_lost = int(found[1])
-        run.missing = missing_samples(record)
-    return run
+        found = re.search(r"lost (\d+), computed twice", told.read_text())
+        run.blocks_lost += int(found[1]) if found else nan
+        run.missing += missing_samples(record)
+
+
+@contextmanager
+def niced() -> Iterator[None]:
+    """This process and the browsers that it starts, until it starts another graph (root may take it back)."""
+    this = psutil.Process()
+    before = this.nice()
+    this.nice(NICENESS)
+    try:
+        yield
+    finally:
+        with suppress(psutil.AccessDenied):
+            this.nice(before)
 
 
 def free_port() -> int:
@@ -170,14 +198,10 @@ def wait_for_pages(graph: subprocess.Popen[bytes], told: Path) -> None:
         time.sleep(0.1)
 
 
-def session(port: int, graph: psutil.Process, effort: Effort) -> WebRun:
-    from playwright.sync_api import sync_playwright
-
-    server = next(child for child in graph.children() if "--listening" in child.cmdline())
-    address, run = f"http://127.0.0.1:{port}/", WebRun()
+def jogs(playwright: Any, address: str, effort: Effort, run: WebRun) -> None:
+    """Positions that a page shows, and ends of jogs."""
     held = random.Random(SEED)
-    with Observer() as observer, Proxy(port) as proxy, sync_playwright() as playwright:
-        scopes(playwright, address, server, effort.graph_seconds, run)
+    with Observer() as observer, Proxy(int(address.strip("/").rpartition(":")[2])) as proxy:
         with own_browser(playwright) as (browser, _):
             page = open_page(browser, address, command=True)
             run.positions = shown_positions(page, min(DISPLAYED, effort.graph_seconds))
@@ -192,7 +216,6 @@ def session(port: int, graph: psutil.Process, effort: Effort) -> WebRun:
             page = open_page(browser, proxy.address, command=True)
             count = effort.scaled(STALLED)
             run.ends["socket stalled"] = collect("socket stalled", count, lambda: stalled(page, proxy, observer, held))
-    return run
 
 
 def scopes(playwright: Any, address: str, server: psutil.Process, seconds: float, run: WebRun) -> None:

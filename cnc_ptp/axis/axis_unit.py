@@ -112,7 +112,7 @@ class AxisUnit(Unit):
         self._control = ControlCommands(self._loop, f"axis {parameters.name}")
         self._commands = (
             self,
-            PowerCommands(self._axis, actual_position=self._actual_position),
+            PowerCommands(self._axis, self._loop),
             FeedReleaseCommands(self._axis),
             PtpCommands(self._axis, self._queue),
             self._override,
@@ -131,9 +131,6 @@ class AxisUnit(Unit):
             self._control,
         )
         self._last_block: AxisBlock | None = None
-
-    def _actual_position(self) -> float:
-        return self._loop.position
 
     def _report_error(self, cycle: int, error_id: int, text: str, values: Mapping[str, Value]) -> None:
         self.report(cycle, Severity.ERROR, error_id, text, values)

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from cnc_ptp.axis import transitions as T
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.faults import ENABLE_REMOVED, STILL_MOVING
 from cnc_ptp.axis.transitions import STOPPABLE
+from cnc_ptp.control.control_loop import ControlLoop
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 
 
 class PowerCommands:
     """`power` and `reset`."""
 
-    def __init__(self, axis: Axis, *, actual_position: Callable[[], float]) -> None:
-        """`actual_position` in mm or deg, as the encoder shows it."""
+    def __init__(self, axis: Axis, loop: ControlLoop) -> None:
         self._axis = axis
-        self._actual_position = actual_position
+        self._loop = loop
 
     def do_power(self, cycle: int, *, enabled: bool) -> str | None:
         """Enables or disables the axis; a moving axis is stopped on its ramp first.
@@ -35,8 +33,8 @@ class PowerCommands:
 
     def _switch_on(self, cycle: int) -> None:
         axis = self._axis
-        if not axis.moving(cycle):
-            axis.place(cycle, self._actual_position())
+        if self._loop.is_open and not axis.moving(cycle):
+            axis.place(cycle, self._loop.position)
         axis.powered = True
         if axis.state == S.DISABLED:
             axis.take(T.POWER_ON)

@@ -125,6 +125,8 @@ class ControlLoop:
         self._history = SetpointHistory()
         self.offset = 0.0
         """Offset between the position of the encoder and the coordinates of the axis."""
+        self.is_open = True
+        """In the last cycle; before the first one as well."""
         self._plain = self._interface == "velocity" and self.delay_cycles == 0
         self._plain = self._plain and not (self._virtual or self._modulo.on or parameters.friction.permitted)
 
@@ -238,6 +240,7 @@ class ControlLoop:
 
     def follow(self, setpoints: Setpoints, closed: bool, columns: ControlColumns, *, watched: bool) -> int:
         """`cycle` for many setpoints; if `watched`, up to the first excessive following error. Returns their number."""
+        self.is_open = not closed
         if closed and self._plain and not self.feedforward.active:
             return self._plain_cycles(setpoints, columns, watched)
         count = len(setpoints)
@@ -286,6 +289,7 @@ class ControlLoop:
     def cycle(self, setpoint: MotionState, closed: bool, columns: ControlColumns, open_velocity: float = 0.0) -> None:
         """`step`, with the values of the cycle added to `columns`."""
         drive = self.drive
+        self.is_open = not closed
         if self._virtual is not None:
             self._virtual.follow(setpoint[0] - self.offset, setpoint[1])
             columns.actual_position.append(setpoint[0])

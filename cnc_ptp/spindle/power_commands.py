@@ -43,7 +43,7 @@ class PowerCommands:
         if spindle.state == S.DISABLED:
             spindle.take(T.POWER_ON)
             spindle.exact_stop.forget()
-            if spindle.loop.measures_position:
+            if spindle.loop.measures_position and spindle.loop.control.is_open:
                 spindle.place(cycle, spindle.loop.position)
 
     def do_set_emergency_stop(self, cycle: int, *, enabled: bool) -> None:

@@ -93,6 +93,43 @@ def test_power_on_again_on_the_ramp_ends_in_standstill() -> None:
     assert_axis_smooth(bench, acceleration=5000.0, jerk=50_000.0)
 
 
+@pytest.mark.parametrize("before_the_end", range(4))
+def test_power_on_again_at_the_end_of_the_ramp_makes_no_step(before_the_end: int) -> None:
+    """The loop has not been open in any cycle: the axis ends where its ramp does, not where its drive lags behind."""
+    first = axis_bench(kv=50.0, drive_time_constant=0.003)
+    powered_off_in_motion(first)
+    first.run(1000)
+    velocity = first.column("set_velocity")
+    end = next(k for k in range(500, 1450) if velocity[k] == 0.0)
+    bench = axis_bench(kv=50.0, drive_time_constant=0.003)
+    powered_off_in_motion(bench)
+    bench.run(end - before_the_end - bench.cycle)
+    bench.accepted("power", enabled=True)
+    bench.run(300)
+    position = bench.column("set_position")
+    assert position[end - 1] == first.column("set_position")[end - 1] and bench.state == S.STANDSTILL
+    assert abs(position[end] - position[end - 1]) <= 0.001 * velocity[end - 1]
+    assert set(position[end:]) == {position[end]}
+    assert bench.column("actual_position")[-1] == pytest.approx(position[end], abs=1e-4)
+    assert_axis_smooth(bench, acceleration=5000.0, jerk=50_000.0)
+
+
+def test_power_off_and_on_between_two_blocks_moves_nothing() -> None:
+    """What the drive still lacks stays a following error: the loop was closed all the time."""
+    bench = axis_bench(kv=50.0, drive_time_constant=0.003)
+    bench.accepted("move_absolute", target=1000.0, **DYNAMICS)
+    bench.run(1)
+    while bench.state != S.STANDSTILL:
+        bench.run(1)
+    rest = bench.column("following_error")[-1]
+    assert abs(rest) > 1e-6
+    bench.accepted("power", enabled=False)
+    bench.accepted("power", enabled=True)
+    bench.run(300)
+    assert set(bench.column("set_position")[-301:]) == {1000.0}
+    assert bench.column("actual_position")[-1] == pytest.approx(1000.0, abs=1e-6)
+
+
 def test_power_off_on_the_path_is_a_fault_and_the_loop_opens_at_standstill() -> None:
     bench = axis_bench(kv=50.0, drive_time_constant=0.003)
     follow_path(bench, blocks=20)

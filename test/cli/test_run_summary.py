@@ -104,3 +104,13 @@ def test_a_terminal_sees_each_note_as_it_comes_once(capsys, monkeypatch):
     with RunProgress() as progress:
         progress.tell(["warning: one"])
     assert capsys.readouterr() == ("", "")
+
+
+def test_a_run_that_stays_tells_notes_and_errors_at_once_without_a_terminal(capsys):
+    with RunProgress(always_tells=True) as progress:
+        progress.tell([Note(23073, "axis x: stop without effect: the axis does not move")], [])
+        errors = ["P-ERR-26101 axis x: no block"]
+        for _ in range(2):
+            progress.tell([Note(23073, "axis x: stop without effect: the axis does not move")], errors)
+    told = ["warning: P-WARN-23073 axis x: stop without effect: the axis does not move", f"error: {errors[0]}"]
+    assert capsys.readouterr() == ("", "".join(f"{line}\n" for line in told))

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from long_support import long
 from loop_support import feedforward
-from machine_support import ROOT, MachineBench, UnitBench, changed_gear, spindle_parameters
+from machine_support import ROOT, MachineBench, UnitBench, changed_gear, spindle_bench, spindle_parameters
 from spindle_support import DOWN, RPM, StuckDrive, bench_of, first_cycle, states
 
 from cnc_ptp.parameters import MachineParameters, SpindleParameters, read_machine
@@ -250,3 +250,19 @@ def test_seeded_speeds_drives_and_goals(seed: int) -> None:
         assert bench.last.in_position[-1] and bench.state == S.STANDSTILL
         assert abs(math.remainder(bench.last.actual_position_deg[-1] - goal, 360.0)) <= 0.05
     assert bench.events == []
+
+
+def test_power_off_and_on_between_two_blocks_moves_nothing():
+    """The loop has been closed all the time: what the drive still lacks stays a following error."""
+    bench = spindle_bench()
+    bench.accepted("orient", position_deg=200.0)
+    bench.run(100)
+    while bench.column("set_speed_rpm")[-1]:
+        bench.run(1)
+    position, lag = bench.column("set_position_deg")[-1], bench.column("following_error_deg")[-1]
+    assert abs(lag) > 1.0
+    bench.accepted("power", enabled=False)
+    bench.accepted("power", enabled=True)
+    bench.run(500)
+    assert set(bench.column("set_position_deg")[-500:]) == {position}
+    assert bench.column("actual_position_deg")[-1] == pytest.approx(position, abs=0.01)

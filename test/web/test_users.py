@@ -363,6 +363,20 @@ def test_a_folder_that_is_not_there(tmp_path, words):
     assert result.output == f"P-ERR-26246 {text}\n"
 
 
+def test_a_user_and_a_token_cannot_have_one_name(users):
+    add_token(users, "cell", "operator")
+    before = users.read_bytes()
+    for add, kind in (
+        (lambda: add_token(users, "otto", "viewer"), "'otto' among its users"),
+        (lambda: add_user(users, "cell", "viewer", PASSWORD), "'cell' among its tokens"),
+    ):
+        with pytest.raises(CncError) as refused:
+            add()
+        assert refused.value.number == 26246
+        assert refused.value.message == f"users file {users} has {kind} already; nothing was changed"
+    assert users.read_bytes() == before
+
+
 def test_removing_nobody(users):
     with pytest.raises(CncError) as refused:
         remove(users, "oto")

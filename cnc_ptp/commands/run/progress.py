@@ -1,4 +1,4 @@
-"""The live line of a run: program, axes, spindles. On a terminal only."""
+"""The live line of a run on a terminal: program, axes, spindles; its notes and errors at once."""
 
 from __future__ import annotations
 
@@ -26,13 +26,15 @@ KINDS: dict[type, str] = {AxisBlock: "axis", SpindleBlock: "spindle", ChannelBlo
 class RunProgress:
     """Shows the progress of a run, at most ten times per second."""
 
-    def __init__(self) -> None:
-        console = Console(stderr=True)
-        self._on = console.is_terminal
+    def __init__(self, *, always_tells: bool = False) -> None:
+        """`always_tells`: notes and errors also without a terminal, as in the journal of a service."""
+        self._console = Console(stderr=True)
+        self._on = self._console.is_terminal
+        self._tells = self._on or always_tells
         if self._on:
-            self._line, self._live = shown_on(console)
+            self._line, self._live = shown_on(self._console)
         self._next = 0.0
-        self._reported: set[Note] = set()
+        self._reported: set[Note | str] = set()
 
     def __enter__(self) -> RunProgress:
         if self._on:
@@ -55,12 +57,17 @@ class RunProgress:
         """True on a terminal when the line is a tenth of a second old."""
         return self._on and time.monotonic() >= self._next
 
-    def tell(self, notes: Iterable[Note]) -> None:
-        """Shows new `notes` above the line: a run that waits for somebody says so immediately."""
-        for note in notes:
-            if self._on and note not in self._reported:
-                self._reported.add(note)
-                self._live.console.print(str(note), style="yellow", markup=False, highlight=False, soft_wrap=True)
+    def tell(self, notes: Iterable[Note], errors: Iterable[str] = ()) -> None:
+        """Shows new ones above the line: a run that waits for somebody says so immediately."""
+        if not self._tells:
+            return
+        for told, style, text in (
+            *((n, "yellow", str(n)) for n in notes),
+            *((e, "bold red", f"error: {e}") for e in errors),
+        ):
+            if told not in self._reported:
+                self._reported.add(told)
+                self._console.print(text, style=style, markup=False, highlight=False, soft_wrap=True)
 
     def show_block(self, outputs: Outputs) -> None:
         """Progress of an offline run."""

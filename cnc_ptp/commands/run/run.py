@@ -76,14 +76,14 @@ def run(
         foxglove=foxglove,
         checkpoints=checkpoints,
     )
-    with WebBesideRun(web, listening) as pages, RunProgress() as progress:
+    with WebBesideRun(web, listening) as pages, RunProgress(always_tells=stay) as progress:
 
         def show(monitor: RunMonitor) -> None:
             if monitor.cycle:
                 pages.begin()
             for note in pages.notes:
                 monitor.notes.add(note)
-            progress.tell(monitor.notes)
+            progress.tell(monitor.notes, monitor.errors)
             if progress.due:
                 progress.show(monitor.views())
 
