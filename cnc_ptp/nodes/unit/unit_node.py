@@ -6,6 +6,7 @@ import socket
 import time
 from collections.abc import Callable
 from functools import partial
+from math import inf
 from typing import Any
 
 from builtin_interfaces.msg import Time
@@ -62,6 +63,9 @@ TOO_LATE = 26116
 DRIVE_GONE = 26267
 SOON = 0.0005
 """Seconds between two looks of a node that waits for the rest of a block."""
+EARLY = 0.6
+"""Of the time of a block, after the last one was computed: a node that waits for others takes what has come then, while
+nobody waits for it."""
 LOOK_PERIOD = 0.005
 """Seconds between two looks of a node that has lost a source."""
 DIAGNOSTICS_PERIOD = 1.0
@@ -119,6 +123,8 @@ class UnitNode(PollingNode):
         self._masters: set[str] = set()
         self._waking: set[str] = set()
         """Sources whose messages wake the node; none where it is told of all."""
+        self._early_at = inf
+        """When the node looks before it is woken; infinite: not before the next block."""
         self._looking: process.SteadyTimer | None = None
         self._free_run = free_run
         self._handover = handover
@@ -245,10 +251,13 @@ class UnitNode(PollingNode):
 
     def wait_time(self) -> float:
         """Seconds until the node looks on its own: it was woken, and another message of the block is still to come."""
-        return SOON if self._waits_for_others else process.SPIN_TIMEOUT
+        return SOON if self._waits_for_others else min(process.SPIN_TIMEOUT, self._early_at - time.monotonic())
 
     def after_wait(self) -> None:
-        if self._waits_for_others:
+        is_early = time.monotonic() >= self._early_at
+        if is_early:
+            self._early_at = inf
+        if is_early or self._waits_for_others:
             self.look()
 
     @property
@@ -418,6 +427,8 @@ class UnitNode(PollingNode):
         self._publish_records()  # first: a recording that ends here has all commands that led to its last states
         self._publications.block(block)
         self._heartbeat.block_sent()
+        if self.paced and self._inputs.feedback and self._handover is None:
+            self._early_at = time.monotonic() + EARLY * 1e-9 * self._cycle_ns * self._count
         self.diagnostics.add_block(block)
         scheduled = self._scheduled_ns.pop(tick.first_cycle, 0)
         if scheduled:
