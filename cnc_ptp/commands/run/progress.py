@@ -59,15 +59,16 @@ class RunProgress:
 
     def tell(self, notes: Iterable[Note], errors: Iterable[str] = ()) -> None:
         """Shows new ones above the line: a run that waits for somebody says so immediately."""
-        if not self._tells:
-            return
-        for told, style, text in (
-            *((n, "yellow", str(n)) for n in notes),
-            *((e, "bold red", f"error: {e}") for e in errors),
-        ):
-            if told not in self._reported:
-                self._reported.add(told)
-                self._console.print(text, style=style, markup=False, highlight=False, soft_wrap=True)
+        if self._tells:
+            for note in notes:
+                self._tell_once(note, "yellow")
+            for error in errors:
+                self._tell_once(f"error: {error}", "bold red")
+
+    def _tell_once(self, what: Note | str, style: str) -> None:
+        if what not in self._reported:
+            self._reported.add(what)
+            self._console.print(str(what), style=style, markup=False, highlight=False, soft_wrap=True)
 
     def show_block(self, outputs: Outputs) -> None:
         """Progress of an offline run."""
