@@ -15,7 +15,7 @@ import tempfile
 import time
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from math import nan
 from multiprocessing import get_context
@@ -106,8 +106,10 @@ def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
         raise RuntimeError(reason)
     show(f"{effort.graph_seconds:.0f} s of {PAGES} scopes, then {effort.scaled(PRESSES, least=2)} jogs and other ends")
     os.environ["ROS_DOMAIN_ID"] = str(1 + os.getpid() % 100)
-    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
-        run = pool.submit(measure, effort).result()
+    run = WebRun()
+    for part in (measure_scopes, measure_jogs):  # each in a process of its own, whose niceness nobody else gets
+        with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+            run = pool.submit(part, effort, run).result()
     yield Figure(f"{PAGES} browsers with a scope of {len(SIGNALS)} signals at 1 kHz: samples", run.samples, "")
     yield Figure("samples of the scopes lost", run.lost, "", goal=0.0, at_most=True)
     lateness = "block lateness of the latest node meanwhile, p99"
@@ -128,22 +130,27 @@ def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
         yield Figure(f"jog, {kind}: started again", again, "times", goal=0.0, at_most=True)
 
 
-def measure(effort: Effort) -> WebRun:
+def measure_scopes(effort: Effort, run: WebRun) -> WebRun:
+    from playwright.sync_api import sync_playwright
+
+    with mill(run) as (address, graph), sync_playwright() as playwright:
+        server = next(child for child in graph.children() if "--listening" in child.cmdline())
+        scopes(playwright, address, server, effort.graph_seconds, run)
+    return run
+
+
+def measure_jogs(effort: Effort, run: WebRun) -> WebRun:
     import rclpy
     from playwright.sync_api import sync_playwright
 
     from cnc_ptp.nodes import process
 
-    run = WebRun()
-    try:
-        with mill(run) as (address, graph), sync_playwright() as playwright:
-            server = next(child for child in graph.children() if "--listening" in child.cmdline())
-            scopes(playwright, address, server, effort.graph_seconds, run)
-        with mill(run, "--composed") as (address, _), sync_playwright() as playwright:
-            process.initialise()
+    with mill(run, "--composed") as (address, _), sync_playwright() as playwright:
+        process.initialise()
+        try:
             jogs(playwright, address, effort, run)
-    finally:
-        rclpy.try_shutdown()
+        finally:
+            rclpy.try_shutdown()
     return run
 
 
@@ -158,8 +165,8 @@ def mill(run: WebRun, *words: str) -> Iterator[tuple[str, psutil.Process]]:
             graph = subprocess.Popen([*command, *words], stdout=output, stderr=subprocess.STDOUT, cwd=folder)
         try:
             wait_for_pages(graph, told)
-            with niced():
-                yield f"http://127.0.0.1:{port}/", psutil.Process(graph.pid)
+            os.nice(NICENESS)
+            yield f"http://127.0.0.1:{port}/", psutil.Process(graph.pid)
         except Exception as error:
             raise RuntimeError(f"{error}; the graph has said: {told.read_text()}") from error
         finally:
@@ -168,19 +175,6 @@ def mill(run: WebRun, *words: str) -> Iterator[tuple[str, psutil.Process]]:
         found = re.search(r"lost (\d+), computed twice", told.read_text())
         run.blocks_lost += int(found[1]) if found else nan
         run.missing += missing_samples(record)
-
-
-@contextmanager
-def niced() -> Iterator[None]:
-    """This process and the browsers that it starts, until it starts another graph (root may take it back)."""
-    this = psutil.Process()
-    before = this.nice()
-    this.nice(NICENESS)
-    try:
-        yield
-    finally:
-        with suppress(psutil.AccessDenied):
-            this.nice(before)
 
 
 def free_port() -> int:

@@ -177,10 +177,11 @@ class Graph(Checks):
         return bool(self._blocks[PLC].run_done)
 
     def close(self) -> None:
-        for node in self.nodes:
-            node.destroy_node()
-            process._timers.pop(node, None)  # they would keep it
-        self._stack.close()
+        try:
+            for node in self.nodes:
+                node.destroy_node()
+        finally:
+            self._stack.close()
 
     # steps
 

@@ -126,7 +126,7 @@ class ControlLoop:
         self.offset = 0.0
         """Offset between the position of the encoder and the coordinates of the axis."""
         self.is_open = True
-        """In the last cycle; before the first one as well."""
+        """Whether the loop was open in the last cycle; True before the first one."""
         self._plain = self._interface == "velocity" and self.delay_cycles == 0
         self._plain = self._plain and not (self._virtual or self._modulo.on or parameters.friction.permitted)
 

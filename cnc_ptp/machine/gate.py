@@ -91,11 +91,17 @@ class BlockGate:
         return missing
 
     def waits_for_others(self, sources: Iterable[str]) -> bool:
-        """All of `sources` have come for the next tick, and something else is missing; False once one is dropped."""
+        """All of `sources` have come for the next tick, and something else is missing.
+
+        One that was dropped comes no more: the tick stands for it.
+        """
         if self._closed or self._open is not None:
             return False
         for source in sources:
-            if not (self._ticks if source == CLOCK else self._blocks.get(source)):
+            if source in self._blocks:
+                if not self._blocks[source]:
+                    return False
+            elif not self._ticks:
                 return False
         return bool(self.missing())
 

@@ -58,6 +58,7 @@ class RunMonitor(PollingNode):
         """The last cycle of the run so far."""
         self.programs = {channel: ProgramReport() for channel in machine.channels}
         self.errors: list[str] = []
+        self._new_faults: list[str] = []
         self.notes = Notes()
         self.refused = 0
         self.run_done = False
@@ -160,9 +161,19 @@ class RunMonitor(PollingNode):
     def _on_event(self, message: Event) -> None:
         if message.severity == Severity.ERROR and message.source != SUPERVISOR:
             self.errors.append(error_text(message))
+            self._new_faults.append(f"error: {self.errors[-1]}")
             self._last_fault = max(self._last_fault, message.cycle)
         self.on_demand = begun_file(message.error_id, message.text) or self.on_demand
         self.notes.add(Note.of_event(message))
+
+    def note_failure(self, text: str) -> None:
+        """Of a process, which the supervisor has noticed."""
+        self._new_faults.append(f"failed: {text}")
+
+    def take_faults(self) -> list[str]:
+        """Errors and failures since the last call, as a run prints them."""
+        new, self._new_faults = self._new_faults, []
+        return new
 
     def _on_command(self, message: msg.CommandRecord) -> None:
         self.refused += not message.accepted

@@ -6,7 +6,7 @@ import sys
 import time
 from collections.abc import Iterable
 from functools import partial
-from math import inf, isfinite
+from math import isfinite
 from typing import Any
 
 import click
@@ -109,7 +109,7 @@ class PlcBridgeNode(UnitNode):
                 **{name: spindle.number for name, spindle in machine.spindles.items()},
             },
         )
-        self.input_period = INPUT_PERIOD if self._free_run else inf  # in real time before each block
+        self.input_period = INPUT_PERIOD
         self._jogs = JogTopics(self._warn)
         self._joints_due = 0
         self._answers: CouplingServices | None = None

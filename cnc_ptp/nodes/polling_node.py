@@ -22,7 +22,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.wire.unreadable import UNREADABLE_MESSAGE
 
 Received = Callable[[bytes], None]
-UNWRITTEN_PERIOD = 0.1
+UNWRITTEN_PERIOD = 0.05
 """Seconds between two looks at inputs that nobody writes."""
 KNOWN_TYPES = {of.value for of in Parameter.Type}
 
@@ -96,14 +96,14 @@ class PollingNode(Node):
         take_all(self._polled)
         if self._inputs_polled and (now := time.monotonic()) >= self._inputs_due:
             self._inputs_due = now + self.input_period
-            self.take_inputs()
+            self.take_written_inputs()
 
     def take_inputs(self) -> None:
         """The same for those of `poll_input`, now."""
         take_all(self._inputs_polled)
 
     def take_written_inputs(self) -> None:
-        """As `take_inputs`; topics without a publisher, most of a machine's, are looked at each UNWRITTEN_PERIOD."""
+        """As `take_inputs`; topics without a publisher, most of a machine's, are looked at every UNWRITTEN_PERIOD."""
         if (now := time.monotonic()) < self._all_inputs_due:
             take_all(self._written)
             return

@@ -162,7 +162,7 @@ def timer(node: Node, period: float, call: Callable[[], None]) -> SteadyTimer:
 
 
 def timers_of(node: Node) -> list[SteadyTimer]:
-    """Kept by the node itself: they call it, and would keep it elsewhere."""
+    """The node holds its timers; elsewhere they would keep it alive, because they call it."""
     timers: list[SteadyTimer] = node.__dict__.setdefault("steady_timers", [])
     return timers
 

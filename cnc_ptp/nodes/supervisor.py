@@ -232,6 +232,7 @@ class Supervisor:
     def _fail(self, error_id: int, text: str) -> None:
         """Notes a failure, publishes it, and has everything that is still alive stopped."""
         self.failures.append(f"P-ERR-{error_id} {text}")
+        self._monitor.note_failure(self.failures[-1])
         event = Event(self._monitor.cycle, SUPERVISOR, Severity.ERROR, error_id, text)
         self._event_publisher.publish(convert.event_to_message(event, convert.time_message(time.time_ns())))
         if self._stop_deadline is None:

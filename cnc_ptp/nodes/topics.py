@@ -31,6 +31,9 @@ LATEST = QoSProfile(depth=1, reliability=QoSReliabilityPolicy.RELIABLE, durabili
 PLC_INPUT = QoSProfile(depth=10, reliability=QoSReliabilityPolicy.RELIABLE)
 """Cyclic values that PLC programmers write: `ros2 topic pub` works without options."""
 
+PLC_EDGES = QoSProfile(depth=100, reliability=QoSReliabilityPolicy.RELIABLE)
+"""Values of which no edge may be lost while the reader stalls: 0.1 s at 1 kHz."""
+
 STATES_OF_UNITS = QoSProfile(depth=100, reliability=QoSReliabilityPolicy.RELIABLE)
 """Checkpoints: one of each unit at a time."""
 
@@ -217,7 +220,9 @@ def plc_topic(unit: str, name: str) -> str:
 
 
 def plc_quality(message_type: Any) -> QoSProfile:
-    """External setpoints are a series of which none may be lost; of the others the newest counts."""
+    """External setpoints are a series of which none may be lost, the HLI has edges; of the others the newest counts."""
+    if message_type in HLI_CONTROL.values():
+        return PLC_EDGES
     return BLOCKS if message_type is msg.ExternalSetpoint else PLC_INPUT
 
 

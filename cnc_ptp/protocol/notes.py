@@ -72,6 +72,7 @@ class Notes:
 
     def __init__(self) -> None:
         self._notes: dict[tuple[int, str, int | None], Note] = {}
+        self._new: list[Note] = []
 
     def add(self, note: Note | None) -> None:
         if note is None:
@@ -81,6 +82,13 @@ class Notes:
         if known is None or (note.refused and not known.refused):
             self._notes.pop(key, None)
             self._notes[key] = note
+        if known is None:
+            self._new.append(note)
+
+    def take_new(self) -> list[Note]:
+        """Those that have come since the last call, as they came first."""
+        new, self._new = self._new, []
+        return new
 
     def __iter__(self) -> Iterator[Note]:
         return iter(self._notes.values())

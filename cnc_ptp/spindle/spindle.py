@@ -315,7 +315,7 @@ class Spindle:
     def fault(self, cycle: int, error_id: int, reason: str, values: Mapping[str, Value] = NO_VALUES) -> None:
         """Error reaction: down to speed 0 on the spindle's ramp, state ErrorStop; `values`: numbers of the reason."""
         had_job = self.work.procedure is not None or not self.speed_was_reached
-        if self.state == S.DISABLED and self.loop.measures_position:
+        if self.state == S.DISABLED and self.loop.measures_position and self.loop.control.is_open:
             self.place(cycle, self.loop.position)
         self._brake(cycle)
         self.error_id = error_id

@@ -1,5 +1,7 @@
 """The closing lines of a run of the graph, from what its nodes have reported."""
 
+import sys
+from io import StringIO
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -14,7 +16,7 @@ from cnc_ptp.commands.run.simulate import ratio_text
 from cnc_ptp.nodes.unit.lateness import Lateness
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.channel_states import ChannelStateCode as C
-from cnc_ptp.protocol.notes import Note
+from cnc_ptp.protocol.notes import Note, Notes
 
 ONE_CHANNEL = {"channel": ProgramReport(40)}
 PTP = Path(__file__).parents[2] / "config" / "ptp.yaml"
@@ -93,24 +95,48 @@ def test_a_graph_without_anything_to_do_says_so(duration, told, capsys, monkeypa
     assert (last == "note: there was nothing to do, give --program, --scenario, --plc, --duration or --stay") is told
 
 
-def test_a_terminal_sees_each_note_as_it_comes_once(capsys, monkeypatch):
+def test_a_terminal_sees_notes_as_they_come(capsys, monkeypatch):
     monkeypatch.setenv("FORCE_COLOR", "1")
     with RunProgress() as progress:
-        for notes in (["warning: one"], ["warning: one", "refused: P-ERR-1 [two]"]):
+        for notes in ([Note(0, "one")], [Note(1, "[two] :x:", refused=True), Note(0, "three", idle_stop=True)], []):
             progress.tell(notes)
     shown = capsys.readouterr().err
-    assert (shown.count("warning: one"), shown.count("refused: P-ERR-1 [two]")) == (1, 1)
+    assert (shown.count("warning: one"), shown.count("refused: P-ERR-1 [two] :x:"), "three" in shown) == (1, 1, False)
     monkeypatch.delenv("FORCE_COLOR")
     with RunProgress() as progress:
-        progress.tell(["warning: one"])
+        progress.tell([Note(0, "one")])
     assert capsys.readouterr() == ("", "")
 
 
-def test_a_run_that_stays_tells_notes_and_errors_at_once_without_a_terminal(capsys):
+def test_a_run_that_stays_tells_notes_and_faults_without_a_terminal(capsys):
     with RunProgress(always_tells=True) as progress:
-        progress.tell([Note(23073, "axis x: stop without effect: the axis does not move")], [])
-        errors = ["P-ERR-26101 axis x: no block"]
+        progress.tell([Note(23073, "axis x: stop without effect: the axis does not move")])
+        progress.tell([], ["error: P-ERR-26101 axis x: no block"])
+    told = "warning: P-WARN-23073 axis x: stop without effect: the axis does not move\nerror: P-ERR-26101 axis x: no block\n"
+    assert capsys.readouterr() == ("", told)
+
+
+@pytest.mark.parametrize("error", [BrokenPipeError(), OSError(28, "No space left on device")])
+def test_a_reader_that_has_gone_or_a_full_disk_ends_no_run(error, monkeypatch):
+    """As with `2>&1 | tee`, which a Ctrl-C ends too."""
+    tries = []
+
+    class Gone(StringIO):
+        def write(self, text):
+            tries.append(text)
+            raise error
+
+    monkeypatch.setattr(sys, "stderr", Gone())
+    with RunProgress(always_tells=True) as progress:
         for _ in range(2):
-            progress.tell([Note(23073, "axis x: stop without effect: the axis does not move")], errors)
-    told = ["warning: P-WARN-23073 axis x: stop without effect: the axis does not move", f"error: {errors[0]}"]
-    assert capsys.readouterr() == ("", "".join(f"{line}\n" for line in told))
+            progress.tell([Note(0, "one")], ["error: two"])
+    assert len(tries) == 1
+
+
+def test_a_note_is_new_once_also_when_its_refusal_comes_later():
+    notes = Notes()
+    for note in (Note(1, "one"), Note(1, "one"), Note(2, "two", refused=True)):
+        notes.add(note)
+    assert [str(note) for note in notes.take_new()] == ["warning: P-WARN-1 one", "refused: P-ERR-2 two"]
+    notes.add(Note(1, "one", refused=True))
+    assert notes.take_new() == [] and [note.refused for note in notes] == [True, True]

@@ -13,13 +13,9 @@ from cnc_ptp.nodes import polling_node
 from cnc_ptp.nodes.polling_node import PollingNode
 from cnc_ptp.nodes.topics import PLC_INPUT
 
-PERIOD = 0.5
-"""Seconds between two looks at what nobody writes: enough for what lies between."""
-
 
 @pytest.fixture
-def outside(ros_domain, monkeypatch):
-    monkeypatch.setattr(polling_node, "UNWRITTEN_PERIOD", PERIOD)
+def outside(ros_domain):
     with ros():
         yield rclpy.create_node("outside", enable_rosout=False, start_parameter_services=False)
 
@@ -42,18 +38,21 @@ def written(outside, percent):
     return writer
 
 
-def test_what_is_written_is_taken_at_each_look_and_what_was_not_within_a_period(outside):
+def test_what_is_written_is_taken_at_each_look_and_what_was_not_within_a_period(outside, monkeypatch):
     node, taken = PollingNode("node", enable_rosout=False), []
-    node.poll_input(msg.Override, "/x/override", taken.append, PLC_INPUT)
+    for axis in "xy":
+        node.poll_input(msg.Override, f"/{axis}/override", taken.append, PLC_INPUT)
     node.take_written_inputs()  # nobody writes
     writer = written(outside, 50.0)
     until(lambda: taken, look=node.take_written_inputs)
-    looked = time.monotonic()
-    while len(taken) < 4:
-        writer.publish(msg.Override(percent=60.0))
-        time.sleep(0.01)
-        node.take_written_inputs()
-    assert time.monotonic() - looked < PERIOD
+    monkeypatch.setattr(polling_node, "UNWRITTEN_PERIOD", 1e9)
+    whole = []
+    monkeypatch.setattr(node, "take_inputs", lambda: whole.append(PollingNode.take_inputs(node)))
+    until(lambda: whole, look=node.take_written_inputs)  # the last one
+    looked = len(taken)
+    writer.publish(msg.Override(percent=60.0))
+    until(lambda: len(taken) > looked, look=node.take_written_inputs)
+    assert len(whole) == 1
 
 
 def test_the_message_of_a_publisher_that_has_gone_at_once_is_taken(outside):

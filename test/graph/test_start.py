@@ -90,7 +90,7 @@ def test_a_recording_that_a_composed_run_cannot_close_is_closed_behind_its_last_
 
     monkeypatch.setattr(OnDemand, "close", close)
     scenario = str(tmp_path / "move.yaml")
-    status = run_machine(str(one_axis), None, scenario, 2.0, str(recording), free_run=True, composed=True)
+    status = run_machine(str(one_axis), None, scenario, 20.0, str(recording), free_run=True, composed=True)
     output = capfd.readouterr().out
     assert status == 1
     assert (

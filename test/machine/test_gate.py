@@ -177,5 +177,7 @@ def test_a_node_does_not_look_for_the_rest_of_what_it_will_not_be_woken_for() ->
     assert gate.waits_for_others({"plc"})
     gate.drop("plc")
     assert not gate.waits_for_others({"plc"})
+    gate.add_tick(CycleTick(10, 10))
+    assert gate.waits_for_others({"plc"})  # for x and y; the tick stands for what comes no more
     gate.close()
-    assert not gate.waits_for_others({"x"})
+    assert not gate.waits_for_others({"plc"})

@@ -252,7 +252,10 @@ def test_seeded_speeds_drives_and_goals(seed: int) -> None:
     assert bench.events == []
 
 
-def test_power_off_and_on_between_two_blocks_moves_nothing():
+@pytest.mark.parametrize(
+    ("command", "arguments"), [("power", {"enabled": True}), ("set_emergency_stop", {"enabled": True})]
+)
+def test_power_off_and_what_closes_the_loop_again_between_two_blocks_move_nothing(command, arguments):
     """The loop has been closed all the time: what the drive still lacks stays a following error."""
     bench = spindle_bench()
     bench.accepted("orient", position_deg=200.0)
@@ -262,7 +265,7 @@ def test_power_off_and_on_between_two_blocks_moves_nothing():
     position, lag = bench.column("set_position_deg")[-1], bench.column("following_error_deg")[-1]
     assert abs(lag) > 1.0
     bench.accepted("power", enabled=False)
-    bench.accepted("power", enabled=True)
+    bench.accepted(command, **arguments)
     bench.run(500)
     assert set(bench.column("set_position_deg")[-500:]) == {position}
     assert bench.column("actual_position_deg")[-1] == pytest.approx(position, abs=0.01)

@@ -1,4 +1,4 @@
-"""The live line of a run on a terminal: program, axes, spindles; its notes and errors at once."""
+"""The live line of a run on a terminal: program, axes, spindles; its notes and faults at once."""
 
 from __future__ import annotations
 
@@ -23,18 +23,24 @@ PERIOD = 0.1
 KINDS: dict[type, str] = {AxisBlock: "axis", SpindleBlock: "spindle", ChannelBlock: "channel"}
 
 
+class ErrorConsole(Console):
+    """Raises what rich would end the program for."""
+
+    def on_broken_pipe(self) -> None:
+        raise BrokenPipeError
+
+
 class RunProgress:
     """Shows the progress of a run, at most ten times per second."""
 
     def __init__(self, *, always_tells: bool = False) -> None:
-        """`always_tells`: notes and errors also without a terminal, as in the journal of a service."""
-        self._console = Console(stderr=True)
+        """`always_tells`: notes and faults also without a terminal, as in the journal of a service."""
+        self._console = ErrorConsole(stderr=True, emoji=False)
         self._on = self._console.is_terminal
         self._tells = self._on or always_tells
         if self._on:
             self._line, self._live = shown_on(self._console)
         self._next = 0.0
-        self._reported: set[Note | str] = set()
 
     def __enter__(self) -> RunProgress:
         if self._on:
@@ -57,18 +63,25 @@ class RunProgress:
         """True on a terminal when the line is a tenth of a second old."""
         return self._on and time.monotonic() >= self._next
 
-    def tell(self, notes: Iterable[Note], errors: Iterable[str] = ()) -> None:
-        """Shows new ones above the line: a run that waits for somebody says so immediately."""
-        if self._tells:
-            for note in notes:
-                self._tell_once(note, "yellow")
-            for error in errors:
-                self._tell_once(f"error: {error}", "bold red")
+    def tell(self, notes: Iterable[Note], faults: Iterable[str] = ()) -> None:
+        """Shows them above the line: a run that waits for somebody says so immediately.
 
-    def _tell_once(self, what: Note | str, style: str) -> None:
-        if what not in self._reported:
-            self._reported.add(what)
-            self._console.print(str(what), style=style, markup=False, highlight=False, soft_wrap=True)
+        Not that an axis stood already when it was to stop: at the end of a run most of them do.
+        """
+        for note in notes:
+            if not note.idle_stop:
+                self._print(str(note), "yellow")
+        for fault in faults:
+            self._print(fault, "bold red")
+
+    def _print(self, text: str, style: str) -> None:
+        """A reader that has gone, or a full disk, ends no run."""
+        if not self._tells:
+            return
+        try:
+            self._console.print(text, style=style, markup=False, highlight=False, soft_wrap=True)
+        except OSError:
+            self._tells = False
 
     def show_block(self, outputs: Outputs) -> None:
         """Progress of an offline run."""

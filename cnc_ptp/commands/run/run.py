@@ -76,14 +76,14 @@ def run(
         foxglove=foxglove,
         checkpoints=checkpoints,
     )
-    with WebBesideRun(web, listening) as pages, RunProgress(always_tells=stay) as progress:
+    with WebBesideRun(web, listening) as pages, RunProgress(always_tells=stay and not composed) as progress:
 
         def show(monitor: RunMonitor) -> None:
             if monitor.cycle:
                 pages.begin()
             for note in pages.notes:
                 monitor.notes.add(note)
-            progress.tell(monitor.notes, monitor.errors)
+            progress.tell(monitor.notes.take_new(), monitor.take_faults())
             if progress.due:
                 progress.show(monitor.views())
 

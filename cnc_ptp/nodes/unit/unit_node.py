@@ -64,8 +64,8 @@ DRIVE_GONE = 26267
 SOON = 0.0005
 """Seconds between two looks of a node that waits for the rest of a block."""
 EARLY = 0.6
-"""Of the time of a block, after the last one was computed: a node that waits for others takes what has come then, while
-nobody waits for it."""
+"""Part of a block's time, from the end of the last computation, after which a node with feedback takes what has come
+already: less is left to do when it is woken."""
 LOOK_PERIOD = 0.005
 """Seconds between two looks of a node that has lost a source."""
 DIAGNOSTICS_PERIOD = 1.0
@@ -122,7 +122,7 @@ class UnitNode(PollingNode):
         self._told_twice: set[str] = set()
         self._masters: set[str] = set()
         self._waking: set[str] = set()
-        """Sources whose messages wake the node; none where it is told of all."""
+        """Sources whose messages wake the node; empty in one process, where every block is handed over."""
         self._early_at = inf
         """When the node looks before it is woken; infinite: not before the next block."""
         self._looking: process.SteadyTimer | None = None
@@ -250,7 +250,7 @@ class UnitNode(PollingNode):
         self._end_if_over()
 
     def wait_time(self) -> float:
-        """Seconds until the node looks on its own: it was woken, and another message of the block is still to come."""
+        """Seconds until the node looks on its own: soon while a message is missing behind the one that woke it."""
         return SOON if self._waits_for_others else min(process.SPIN_TIMEOUT, self._early_at - time.monotonic())
 
     def after_wait(self) -> None:
@@ -384,8 +384,9 @@ class UnitNode(PollingNode):
             self._lose(source, f"block {self._gate.next_cycle} of '{source}' is missing, a later one came")
         while self.failure is None:
             if not self._gate.opened:
-                if not self._gate.missing():
-                    self.before_block()
+                if not self._gate.closed and not self._gate.missing():
+                    with self._heartbeat.working():
+                        self.before_block()
                 begun = self._gate.begin()
                 if begun is None:
                     return

@@ -170,7 +170,7 @@ def change(file: Path, kind: str, name: str, entry: dict[str, str] | None) -> No
     """Writes the file again, whole or not at all, readable by its owner alone. Raises CncError 26246."""
     known = read_users(file) if file.exists() else {"users": {}, "tokens": {}}
     other = "tokens" if kind == "users" else "users"
-    if entry is not None and name in known[other]:  # recordings name who gave a command
+    if entry is not None and name in known[other] and name not in known[kind]:  # recordings name who gave a command
         raise CncError(BAD_USERS, f"users file {file} has '{name}' among its {other} already", UNCHANGED)
     content: dict[str, dict[str, Any]] = {
         each: {user.name: {"role": user.role, "hash": user.hash} for user in users.values()}

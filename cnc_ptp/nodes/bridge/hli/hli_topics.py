@@ -13,7 +13,7 @@ from rclpy.serialization import deserialize_message
 
 from cnc_ptp.nodes import convert
 from cnc_ptp.nodes.polling_node import PollingNode
-from cnc_ptp.nodes.topics import HLI_CONTROL, HLI_STATUS, PLC_INPUT, hli_control_topic, hli_status_topic
+from cnc_ptp.nodes.topics import HLI_CONTROL, HLI_STATUS, PLC_EDGES, PLC_INPUT, hli_control_topic, hli_status_topic
 from cnc_ptp.plc.hli.hli import Hli
 from cnc_ptp.plc.hli.messages import control_message
 from cnc_ptp.plc.hli.object_control import ObjectControl
@@ -64,7 +64,7 @@ class HliTopics:
         readers = {kind: control_reader(kind) for kind in HLI_CONTROL}
         for name, control in hli.objects.items():
             topic = ControlTopic(control, readers[control.kind])
-            node.poll_input(HLI_CONTROL[control.kind], hli_control_topic(name), topic.receive, PLC_INPUT)
+            node.poll_input(HLI_CONTROL[control.kind], hli_control_topic(name), topic.receive, PLC_EDGES)
             status_type = HLI_STATUS[control.kind]
             self._publishers[name] = node.create_publisher(status_type, hli_status_topic(name), PLC_INPUT)
 
