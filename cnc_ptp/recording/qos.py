@@ -23,6 +23,7 @@ class Qos(NamedTuple):
 BLOCKS = Qos(1000)
 REMEMBERED = Qos(1000, "transient_local")
 INPUT = Qos(10)
+EDGES = Qos(100)
 ROSOUT = Qos(1000, "transient_local", lifespan=10)
 BY_TYPE = {
     "cnc_ptp/msg/AxisBlock": REMEMBERED,
@@ -39,9 +40,9 @@ BY_TYPE = {
     "cnc_ptp/msg/Jog": INPUT,
     "cnc_ptp/msg/FeedRelease": INPUT,
     "cnc_ptp/msg/LatenessHistogram": INPUT,
-    "cnc_ptp/msg/AxisHliControl": INPUT,
-    "cnc_ptp/msg/ChannelHliControl": INPUT,
-    "cnc_ptp/msg/SpindleHliControl": INPUT,
+    "cnc_ptp/msg/AxisHliControl": EDGES,
+    "cnc_ptp/msg/ChannelHliControl": EDGES,
+    "cnc_ptp/msg/SpindleHliControl": EDGES,
     "sensor_msgs/msg/JointState": INPUT,
     "diagnostic_msgs/msg/DiagnosticArray": INPUT,
     "rcl_interfaces/msg/Log": ROSOUT,

@@ -16,7 +16,7 @@ from ros_support import ros
 from cnc_ptp import msg
 from cnc_ptp.nodes import player, process
 from cnc_ptp.nodes.observed_topics import observed_topics, type_name
-from cnc_ptp.nodes.topics import BLOCK_TYPES, BLOCKS, EVENTS, PLC_INPUT, REMEMBERED_BLOCKS
+from cnc_ptp.nodes.topics import BLOCK_TYPES, BLOCKS, EVENTS, PLC_EDGES, PLC_INPUT, REMEMBERED_BLOCKS
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.recording import qos
 from cnc_ptp.recording.reader import TopicInfo, iter_messages, read_recording
@@ -74,7 +74,12 @@ def test_handshakes_are_recorded_alike_offline_and_in_the_graph(tmp_path):
 
 def test_qualities_of_the_recording_are_those_of_the_nodes():
     """recording.qos knows no ROS, nodes.topics does: they say the same."""
-    for quality, known in ((BLOCKS, qos.BLOCKS), (EVENTS, qos.REMEMBERED), (PLC_INPUT, qos.INPUT)):
+    for quality, known in (
+        (BLOCKS, qos.BLOCKS),
+        (EVENTS, qos.REMEMBERED),
+        (PLC_INPUT, qos.INPUT),
+        (PLC_EDGES, qos.EDGES),
+    ):
         assert quality == player.qos_of(TopicInfo("/t", "a/msg/B", qos=qos.profiles_text(known)))
     for kind, message_type in BLOCK_TYPES.items():
         published = REMEMBERED_BLOCKS if kind in ("axis", "spindle") else BLOCKS
