@@ -8,6 +8,7 @@
 
 from __future__ import annotations
 
+import marshal
 import math
 import random
 from collections.abc import Iterator, Mapping
@@ -29,6 +30,8 @@ from cnc_ptp.state.machine_state import StateStore
 
 UNCHANGED = ("nothing was changed", "nothing was executed", "nothing was started")
 """What a refusal says that leaves everything as it was."""
+WITHOUT_REFERENCES = 2
+"""Version of marshal in which it does not count who else holds a value."""
 WHOLE = 0.1
 """Share of commands after whose refusal all units are compared; after the others the one that refused."""
 
@@ -92,9 +95,11 @@ class CheckedMachine(Checks):
         assert isinstance(unit, PlcUnit)
         return unit
 
-    def command(self, command: Command) -> CommandRecord:
-        """One command that its unit gets between two blocks; what a refusal changes is a violation."""
-        look = self.state if self._chance.random() < WHOLE else partial(self.unit_state, command.target)
+    def command(self, command: Command, *, looked_at: bool = True) -> CommandRecord:
+        """One command between two blocks; if it is looked at, what a refusal changes is a violation."""
+        if not looked_at:
+            return self.offline.runner(command.target).command(command)
+        look = self.content if self._chance.random() < WHOLE else partial(self.unit_content, command.target)
         before, left = look(), Record(self.units[command.target])
         record = self.offline.runner(command.target).command(command)
         if record.accepted:
@@ -103,7 +108,7 @@ class CheckedMachine(Checks):
         if any(text in record.message for text in UNCHANGED):
             with left.taken_away():
                 after = look()
-            self.require(before == after, f"a refusal has changed something: {said}")
+            self.require(bits(before) == bits(after), f"a refusal has changed something: {said}")
         else:
             self.require("ErrorStop" in record.message, said)
         return record
@@ -119,15 +124,21 @@ class CheckedMachine(Checks):
 
     def state(self) -> bytes:
         """All units as bytes."""
-        for unit in self.units.values():
-            forget_last_command(unit)
-            if isinstance(unit, AxisUnit):
-                unit._axis.setpoint(self.offline.next_cycle)
+        self._bring_up_to_date()
         return self._store.encode(self.offline, with_plc=True)
 
-    def unit_state(self, name: str) -> bytes:
-        """One unit as bytes."""
-        return state_of(self._store, self.offline.runner(name), self.offline.next_cycle)
+    def content(self) -> list[Any]:
+        """What all units hold (state/machine_state.py)."""
+        self._bring_up_to_date()
+        return self._store.content_of_units(self.offline.next_cycle, *self.offline.parts)
+
+    def unit_content(self, name: str) -> list[Any]:
+        """What one unit holds."""
+        return content_of(self._store, self.offline.runner(name), self.offline.next_cycle)
+
+    def _bring_up_to_date(self) -> None:
+        for unit in self.units.values():
+            bring_up_to_date(unit, self.offline.next_cycle)
 
     def twin(self, state: bytes) -> OfflineMachine:
         """Another machine with a state of this one."""
@@ -137,12 +148,22 @@ class CheckedMachine(Checks):
         return offline
 
 
-def state_of(store: StateStore, runner: UnitRunner, cycle: int) -> bytes:
-    """A unit as bytes; `cycle`: the next one."""
-    forget_last_command(runner.unit)
-    if isinstance(runner.unit, AxisUnit):
-        runner.unit._axis.setpoint(cycle)  # what a look at it brings up to date is no change
-    return store.encode_units(runner.next_cycle, {runner.unit.name: runner}, {})
+def content_of(store: StateStore, runner: UnitRunner, cycle: int) -> list[Any]:
+    """What a unit holds; `cycle`: the next one."""
+    bring_up_to_date(runner.unit, cycle)
+    return store.content_of_units(runner.next_cycle, {runner.unit.name: runner}, {})
+
+
+def bits(value: Any) -> bytes:
+    """The same for what is equal to the bit. Raises ValueError for anything but plain lists, numbers and texts."""
+    return marshal.dumps(value, WITHOUT_REFERENCES)
+
+
+def bring_up_to_date(unit: Unit, cycle: int) -> None:
+    """What a look at a unit does, which is no change."""
+    forget_last_command(unit)
+    if isinstance(unit, AxisUnit):
+        unit._axis.setpoint(cycle)
 
 
 def forget_last_command(unit: Unit) -> None:

@@ -22,7 +22,7 @@ from rclpy.node import Node
 from rclpy.serialization import serialize_message
 from rclpy.service import Service
 
-from bench.checked_machine import UNCHANGED, Checks, Record, state_of
+from bench.checked_machine import UNCHANGED, Checks, Record, bits, content_of
 from bench.fuzzing.engine import Broken, objection
 from campaign.graph import free_domain
 from cnc_ptp.errors import CncError
@@ -220,7 +220,7 @@ class Graph(Checks):
         """A request; its answer, if there is one already. A refusal that says so has changed nothing."""
         answers: list[Any] = []
         unit = self.units.get(given.name.partition("/")[0])
-        before, left = self._state(unit), None if unit is None else Record(unit.unit)
+        before, left = self._content(unit), None if unit is None else Record(unit.unit)
         with self._handed_on():
             service = given.receive
             service.send_response(service.callback(request, given.type.Response()), answers)
@@ -228,18 +228,18 @@ class Graph(Checks):
             serialize_message(answer)
             if left is not None and refuses(answer):
                 with left.taken_away():
-                    self.require(before == self._state(unit), f"a refusal has changed something: {answer.message}")
+                    self.require(before == self._content(unit), f"a refusal has changed something: {answer.message}")
         return answers[0] if answers else None
 
     def goal(self, given: Input, request: Any, *, cancelled: bool) -> Goal | None:
         with self._handed_on():
             return given.receive(request, cancelled=cancelled)
 
-    def _state(self, node: Any) -> bytes:
+    def _content(self, node: Any) -> bytes:
         """Of the unit of a node; the PLC's is not kept: it has callbacks of its node."""
         if node is None or node.unit.kind == PLC:
             return b""
-        return state_of(self._store, node._runner, self._cycle)
+        return bits(content_of(self._store, node._runner, self._cycle))
 
     @contextmanager
     def _handed_on(self) -> Iterator[None]:

@@ -43,8 +43,7 @@ class PowerCommands:
         if spindle.state == S.DISABLED:
             spindle.take(T.POWER_ON)
             spindle.exact_stop.forget()
-            if spindle.loop.measures_position and spindle.loop.control.is_open:
-                spindle.place(cycle, spindle.loop.position)
+            spindle.place_after_open_loop(cycle)
 
     def do_set_emergency_stop(self, cycle: int, *, enabled: bool) -> None:
         """The emergency stop of the machine or of the HLI: down to speed 0, ErrorStop.

@@ -172,6 +172,11 @@ class Spindle:
         """The set position at `cycle` is `position`; the speed stays."""
         self._shift += position - self.motion(cycle)[0]
 
+    def place_after_open_loop(self, cycle: int) -> None:
+        """The set position begins at the actual one, unless a position loop has held it so far."""
+        if self.loop.measures_position and self.loop.control.is_open:
+            self.place(cycle, self.loop.position)
+
     @property
     def override(self) -> float:
         if self.feed_held:
@@ -315,8 +320,8 @@ class Spindle:
     def fault(self, cycle: int, error_id: int, reason: str, values: Mapping[str, Value] = NO_VALUES) -> None:
         """Error reaction: down to speed 0 on the spindle's ramp, state ErrorStop; `values`: numbers of the reason."""
         had_job = self.work.procedure is not None or not self.speed_was_reached
-        if self.state == S.DISABLED and self.loop.measures_position and self.loop.control.is_open:
-            self.place(cycle, self.loop.position)
+        if self.state == S.DISABLED:
+            self.place_after_open_loop(cycle)
         self._brake(cycle)
         self.error_id = error_id
         self.job_error = had_job

@@ -75,12 +75,18 @@ class StateStore:
         self, next_cycle: int, runners: Mapping[str, UnitRunner], blocks: Mapping[str, CycleBlock]
     ) -> bytes:
         """Some units before a cycle, and the last blocks of some. Raises CncError 26150."""
+        text = json.dumps(self.content_of_units(next_cycle, runners, blocks), separators=(",", ":"))
+        rest = zstandard.compress(text.encode(), LEVEL)
+        return MAGIC + LAYOUT.to_bytes(2, "little") + kernel_digest() + check_sum(rest) + rest
+
+    def content_of_units(
+        self, next_cycle: int, runners: Mapping[str, UnitRunner], blocks: Mapping[str, CycleBlock]
+    ) -> list[Any]:
+        """The same before it is compressed: cycle, value of the root, shapes, rows. Raises CncError 26150."""
         encoder = Encoder(self._roots, self.texts, interpreters(runners), self._lists)
         root = encoder.encode([runners, blocks])
         self._lists = encoder.lists
-        text = json.dumps([next_cycle, root, encoder.shapes, encoder.rows], separators=(",", ":"))
-        rest = zstandard.compress(text.encode(), LEVEL)
-        return MAGIC + LAYOUT.to_bytes(2, "little") + kernel_digest() + check_sum(rest) + rest
+        return [next_cycle, root, encoder.shapes, encoder.rows]
 
     def restore(self, state: bytes) -> MachineState:
         """New units in a state. Raises CncError 26151 for damaged bytes, 26152 for those of another kernel."""
