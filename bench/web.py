@@ -133,9 +133,9 @@ def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
 def measure_scopes(effort: Effort, run: WebRun) -> WebRun:
     from playwright.sync_api import sync_playwright
 
-    with mill(run) as (address, graph), sync_playwright() as playwright:
+    with mill(run) as (port, graph), sync_playwright() as playwright:
         server = next(child for child in graph.children() if "--listening" in child.cmdline())
-        scopes(playwright, address, server, effort.graph_seconds, run)
+        scopes(playwright, address_of(port), server, effort.graph_seconds, run)
     return run
 
 
@@ -145,18 +145,18 @@ def measure_jogs(effort: Effort, run: WebRun) -> WebRun:
 
     from cnc_ptp.nodes import process
 
-    with mill(run, "--composed") as (address, _), sync_playwright() as playwright:
+    with mill(run, "--composed") as (port, _), sync_playwright() as playwright:
         process.initialise()
         try:
-            jogs(playwright, address, effort, run)
+            jogs(playwright, port, effort, run)
         finally:
             rclpy.try_shutdown()
     return run
 
 
 @contextmanager
-def mill(run: WebRun, *words: str) -> Iterator[tuple[str, psutil.Process]]:
-    """The graph of the mill: address of its pages, process. What it has lost counts for `run`."""
+def mill(run: WebRun, *words: str) -> Iterator[tuple[int, psutil.Process]]:
+    """The graph of the mill: port of its pages, process. What it has lost counts for `run`."""
     port = free_port()
     with tempfile.TemporaryDirectory() as folder:
         record, told = str(Path(folder) / "run.mcap"), Path(folder) / "told"
@@ -166,7 +166,7 @@ def mill(run: WebRun, *words: str) -> Iterator[tuple[str, psutil.Process]]:
         try:
             wait_for_pages(graph, told)
             os.nice(NICENESS)
-            yield f"http://127.0.0.1:{port}/", psutil.Process(graph.pid)
+            yield port, psutil.Process(graph.pid)
         except Exception as error:
             raise RuntimeError(f"{error}; the graph has said: {told.read_text()}") from error
         finally:
@@ -175,6 +175,10 @@ def mill(run: WebRun, *words: str) -> Iterator[tuple[str, psutil.Process]]:
         found = re.search(r"lost (\d+), computed twice", told.read_text())
         run.blocks_lost += int(found[1]) if found else nan
         run.missing += missing_samples(record)
+
+
+def address_of(port: int) -> str:
+    return f"http://127.0.0.1:{port}/"
 
 
 def free_port() -> int:
@@ -192,10 +196,10 @@ def wait_for_pages(graph: subprocess.Popen[bytes], told: Path) -> None:
         time.sleep(0.1)
 
 
-def jogs(playwright: Any, address: str, effort: Effort, run: WebRun) -> None:
+def jogs(playwright: Any, port: int, effort: Effort, run: WebRun) -> None:
     """Positions that a page shows, and ends of jogs."""
-    held = random.Random(SEED)
-    with Observer() as observer, Proxy(int(address.strip("/").rpartition(":")[2])) as proxy:
+    address, held = address_of(port), random.Random(SEED)
+    with Observer() as observer, Proxy(port) as proxy:
         with own_browser(playwright) as (browser, _):
             page = open_page(browser, address, command=True)
             run.positions = shown_positions(page, min(DISPLAYED, effort.graph_seconds))

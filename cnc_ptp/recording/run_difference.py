@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -29,9 +29,9 @@ class RunDifference(NamedTuple):
     """What differs in the time that both have, from `begin` to `end` (s).
 
     rows           of all fields, also those that do not differ
-    program_times  of the channels: s with a program running in each, from `begin` on
+    program_times  of the channels: in each run s with a program in progress, from `begin` on
     cycle_time     s
-    notes          what a recording lacks, and that one ends before the other
+    notes          what a recording lacks, that one ends before the other, programs that have not ended
     """
 
     rows: list[FieldDifference]
@@ -68,6 +68,7 @@ def difference(
         rows: list[FieldDifference] = []
         times: dict[str, tuple[float, float]] = {}
         spans: dict[str, tuple[float, float]] = {}
+        unfinished: list[str] = []
         for unit, fields in fields_of(machine).items():
             columns = common_columns(pair, f"/{unit}/state", fields, begin, end)
             if columns is None:
@@ -76,13 +77,16 @@ def difference(
             spans[unit] = (float(cycles[0]) * cycle_time, float(cycles[-1]) * cycle_time)
             rows += [field_difference(unit, name, cycles, one[name], other[name]) for name in one]
             if unit in machine.channels:
-                times[unit] = program_times(pair, unit, spans[unit][0], end, cycle_time)
+                programs = [in_program(file, unit, spans[unit][0], end) for file in pair]
+                first_time, second_time = (float(np.count_nonzero(each)) * cycle_time for each in programs)
+                times[unit] = first_time, second_time
+                unfinished += notes_of_programs(unit, programs, shown)
         if not rows:
             times_of = " and ".join(f"{name} {span_text(file)}" for name, file in zip(shown, pair, strict=True))
             reason = f"the recordings have no cycle in common{asked_part(begin, end)}: {times_of}"
             raise CncError(NOT_COMPARABLE, reason, "nothing was compared")
         start, last = min(span[0] for span in spans.values()), max(span[1] for span in spans.values())
-        notes = [*notes_of_both(pair, shown, cycle_time, end), *notes_of_units(machine, spans, start, last)]
+        notes = [*notes_of_both(pair, shown, cycle_time, end), *notes_of_units(machine, spans, start, last), *unfinished]
         return RunDifference(rows, times, start, last, cycle_time, notes)
 
 
@@ -163,13 +167,18 @@ def common_columns(
     return common, {name: first[name][places] for name in known}, {name: second[name][others] for name in known}
 
 
-def program_times(
-    pair: Sequence[OpenRecording], channel: str, begin: float, end: float | None, cycle_time: float
-) -> tuple[float, float]:
-    """How long a program was being executed in each run, from `begin` to its own end, s."""
-    states = [file.columns(f"/{channel}/state", STATE, start=begin, end=end)[STATE] for file in pair]
-    first, second = (float(np.count_nonzero(np.isin(of, IN_PROGRAM))) * cycle_time for of in states)
-    return first, second
+def in_program(file: OpenRecording, channel: str, begin: float, end: float | None) -> npt.NDArray[np.bool_]:
+    """For each cycle from `begin` to `end`, or to the end of the run (s), whether a program is in progress."""
+    return np.isin(file.columns(f"/{channel}/state", STATE, start=begin, end=end)[STATE], IN_PROGRAM)
+
+
+def notes_of_programs(
+    channel: str, programs: Iterable[npt.NDArray[np.bool_]], names: Iterable[str]
+) -> Iterator[str]:
+    """The runs, by name, in whose last cycle a program is in progress."""
+    running = [name for name, cycles in zip(names, programs, strict=True) if len(cycles) and cycles[-1]]
+    if running:
+        yield f"the program of {channel} has not ended in {' and '.join(running)}: its time is that so far"
 
 
 def same_machine(first: OpenRecording, second: OpenRecording) -> MachineParameters:

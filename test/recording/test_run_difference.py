@@ -14,7 +14,7 @@ from cnc_ptp.recording.reader import read_recording
 from cnc_ptp.recording.recovery import recover
 from cnc_ptp.recording.run_difference import difference
 
-PTP = ROOT / "config" / "ptp.yaml"
+PTP, MILL = ROOT / "config" / "ptp.yaml", ROOT / "config" / "mill.yaml"
 EQUAL = "both runs are equal to the bit in the columns that are compared"
 
 
@@ -86,6 +86,7 @@ def test_a_file_that_was_cut_before_its_first_state(whole: Path, tmp_path: Path)
     nothing = f"P-ERR-26011 recording {cut}: holds no states; nothing was"
     assert words(call("report", cut, "-o", page)) == f"{nothing} drawn"
     assert words(call("report", whole, "--compare", cut, "-o", page)) == f"{nothing} drawn"
+    assert words(call("plot", cut)) == f"{nothing} drawn"
     again = tmp_path / "again.mcap"
     assert words(call("replay", cut, "--override", 50, "-o", again)) == (
         f"P-ERR-26011 recording {cut}: holds no states; nothing was computed; --to says until when"
@@ -147,6 +148,21 @@ def test_a_cut_file_has_one_end(whole: Path, tmp_path: Path) -> None:
     )
     lines = call("replay", cut, "--from", 1, "--to", 3).output.splitlines()
     assert "compared from 1 s to 1.999 s" in lines and f"note: {cut}: {NOT_CLOSED}" in lines
+
+
+def test_programs_that_have_not_ended_are_named(tmp_path: Path) -> None:
+    program = tmp_path / "part.nc"
+    program.write_text("N10 G01 X10 F600\nM30\n")
+    ended, cut = (
+        simulated(tmp_path / f"{name}.mcap", "--program", program, machine=MILL, duration=duration)
+        for name, duration in (("ended", 5.0), ("cut", 0.7))
+    )
+    so_far = "the program of channel has not ended in {}: its time is that so far"
+    assert difference(ended, cut).notes[1:] == [so_far.format(cut)]
+    both = difference(ended, cut, end=0.5, names=("A", "B"))
+    assert both.notes == [so_far.format("A and B")]
+    assert both.program_times["channel"][0] == both.program_times["channel"][1] > 0.4
+    assert difference(ended, ended).notes == []
 
 
 def test_notes_and_errors_name_a_run_as_they_are_told(whole: Path, parts: Path) -> None:

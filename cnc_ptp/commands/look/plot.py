@@ -51,10 +51,10 @@ def rows_of(recorded: Recorded, topics: Sequence[str]) -> list[PlotRow]:
     units = axis_units(recorded)
     rows = chosen_rows(recorded, topics, units, torque_units(recorded)) if topics else usual_rows(recorded, units)
     if not rows:
-        why = "no axis and no spindle moves there" if recorded.states else "holds no states"
-        raise CncError(
-            NOT_RECORDED, f"recording {recorded.path}: {why}", "nothing was drawn, choose fields with --topics"
-        )
+        if not recorded.states:
+            raise CncError(NOT_RECORDED, f"recording {recorded.path}: holds no states", "nothing was drawn")
+        reason = f"recording {recorded.path}: no axis and no spindle moves there"
+        raise CncError(NOT_RECORDED, reason, "nothing was drawn, choose fields with --topics")
     return rows
 
 
