@@ -24,6 +24,8 @@ from statistics import median
 from typing import Any
 
 import psutil
+from mcap.reader import make_reader
+from rclpy.serialization import deserialize_message
 
 from bench.figures import Effort, Figure, ShowProgress
 from bench.graph import missing_samples
@@ -31,7 +33,9 @@ from bench.graph_run import process_seconds
 from bench.jobs import MACHINE, long_program
 from bench.plc import p99
 from bench.web_jogs import KEEP_PRESSES, End, Observer, Proxy, collect, killed, own_browser, released, stalled
-from cnc_ptp.recording.node_figures import LATENESS_P99
+from cnc_ptp.msg import LatenessHistogram
+from cnc_ptp.nodes.topics import LATENESS
+from cnc_ptp.nodes.unit.lateness import Lateness
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "test" / "web_browser"))
 
@@ -91,7 +95,10 @@ class WebRun:
     lost: int = 0
     """Cycles of the scopes that have not come."""
     core: float = nan
+    looked: tuple[int, int] | None = None
+    """From when to when the scopes were looked at, ns of the wall clock."""
     lateness_p99: float = nan
+    """Of the blocks of the latest node meanwhile."""
     positions: float = nan
     """A second, on a page."""
     reactions: list[float] = field(default_factory=list)
@@ -175,6 +182,27 @@ def mill(run: WebRun, *words: str) -> Iterator[tuple[int, psutil.Process]]:
         found = re.search(r"lost (\d+), computed twice", told.read_text())
         run.blocks_lost += int(found[1]) if found else nan
         run.missing += missing_samples(record)
+        if run.looked:
+            run.lateness_p99, run.looked = lateness_p99(record, *run.looked), None
+
+
+def lateness_p99(record: str, begin: int, end: int) -> float:
+    """Of the latest node from `begin` to `end` (ns of the wall clock), in ms. Nodes tell what was since their start."""
+    first: dict[str, LatenessHistogram] = {}
+    last: dict[str, LatenessHistogram] = {}
+    with Path(record).open("rb") as file:
+        for _, _, message in make_reader(file).iter_messages(topics=[f"/{LATENESS}"], end_time=end):
+            told = deserialize_message(message.data, LatenessHistogram)
+            (first if message.log_time <= begin else last)[told.source] = told
+    return max(lateness_since(first[source], last[source]).percentile_us(99.0) for source in last) / 1000.0
+
+
+def lateness_since(first: LatenessHistogram, last: LatenessHistogram) -> Lateness:
+    """What `last` has more than `first`."""
+    late = Lateness()
+    late.merge(last)
+    late.counts.subtract(dict(zip(first.step, first.blocks, strict=True)))
+    return late
 
 
 def address_of(port: int) -> str:
@@ -229,14 +257,13 @@ def scopes(playwright: Any, address: str, server: psutil.Process, seconds: float
         for page in pages:
             page.evaluate(COUNT_SAMPLES)
         time.sleep(SETTLING)
-        begin, used = time.monotonic(), process_seconds(server)
+        begin, used = time.time_ns(), process_seconds(server)
         pages[0].wait_for_timeout(1000.0 * seconds)
-        run.core = (process_seconds(server) - used) / (time.monotonic() - begin)
+        run.looked = begin, time.time_ns()
+        run.core = (process_seconds(server) - used) / (1e-9 * (run.looked[1] - begin))
         for page in pages:
             seen = page.evaluate("window.seen")
             run.samples, run.lost = run.samples + seen["samples"], run.lost + seen["lost"]
-        nodes = pages[0].evaluate("[...app.store.nodes.values()].map((node) => node.values)")
-        run.lateness_p99 = max(float(values[LATENESS_P99]) for values in nodes if LATENESS_P99 in values)
         pages[0].evaluate("() => app.command('channel', 'reset', {})")
         until(pages[0], "!app.store.units.channel.active")
 
