@@ -34,12 +34,17 @@ def is_open(kind: str, command: str, arguments: Mapping[str, Any]) -> bool:
     if command in ALWAYS or command in STOPS[kind]:
         return True
     if command == "overlay":
-        return arguments.get("control_unit") in HOLDS
+        return arguments.get("control_unit") in HOLDS and holds_or_gives_back(arguments)
     if command == "power":
         return arguments.get("enabled") is False
     if command == "jog":
         return arguments.get("velocity") == 0.0
     return command in HOLDS and arguments.get("enabled") is True
+
+
+def holds_or_gives_back(overlay: Mapping[str, Any]) -> bool:
+    """Of a control unit that holds. An overlay that does not hold would take away the hold of somebody else."""
+    return overlay.get("enabled") is False or overlay.get("value") == 1.0
 
 
 def closed_to(

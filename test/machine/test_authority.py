@@ -101,6 +101,8 @@ def test_a_program_whose_spindle_is_closed_to_channels():
         ("axis", "power", {"enabled": False}),
         ("axis", "jog", {"velocity": 0.0}),
         ("axis", "overlay", {"control_unit": "feed_hold", "enabled": True, "value": 1.0}),
+        ("axis", "overlay", {"control_unit": "feed_hold", "enabled": False}),
+        ("channel", "overlay", {"control_unit": "emergency_stop", "enabled": True, "value": 1.0}),
         ("axis", "upstream_lost", {"source": "plc"}),
         ("spindle", "stop", {}),
         ("channel", "reset", {}),
@@ -121,6 +123,10 @@ def test_what_brings_to_rest_is_open(kind, command, arguments):
         ("axis", "power", {"enabled": True}),
         ("axis", "jog", {"velocity": 1.0}),
         ("axis", "overlay", {"control_unit": "override", "enabled": True, "value": 100.0}),
+        ("axis", "overlay", {"control_unit": "override", "enabled": False}),
+        ("axis", "overlay", {"control_unit": "feed_hold", "enabled": True, "value": 0.0}),
+        ("axis", "overlay", {"control_unit": "feed_hold", "enabled": True}),
+        ("axis", "overlay", {}),
         ("axis", "begin_trajectory", {}),
         ("axis", "write_parameter", {}),
         ("spindle", "start", {}),
@@ -132,6 +138,26 @@ def test_what_brings_to_rest_is_open(kind, command, arguments):
 def test_what_moves_or_releases_is_not(kind, command, arguments):
     assert command in COMMANDS[kind]
     assert not is_open(kind, command, arguments)
+
+
+def test_an_overlay_of_a_closed_source_holds_and_releases_nobody():
+    bench = MachineBench(machine=closed_machine(plc=["x"]), end_when_idle=False)
+    bench.run(0.02)
+    runner = bench.offline.runner("x")
+    assert runner.asked(Command("x", "move_absolute", {"target": 20.0}), OF_SERVICES).accepted
+    assert runner.asked(Command("x", "feed_hold", {"enabled": True}), OF_SERVICES).accepted
+    bench.run(1.0)
+    held = bench.position("x")
+    overlay = {"control_unit": "feed_hold", "enabled": True, "holder": "hli"}
+    record = runner.asked(Command("x", "overlay", {**overlay, "value": 0.0}), OF_PLC)
+    assert text_of(record) == refusal("axis", "x", "overlay", "plc", "the PLC")
+    for change in ({**overlay, "value": 1.0}, {"control_unit": "feed_hold", "enabled": False}):
+        assert runner.asked(Command("x", "overlay", change), OF_PLC).accepted
+        bench.run(1.0)
+        assert bench.position("x") == held < 20.0
+    assert runner.asked(Command("x", "feed_hold", {"enabled": False}), OF_SERVICES).accepted
+    bench.run(2.0)
+    assert bench.position("x") == 20.0
 
 
 @pytest.fixture
