@@ -147,10 +147,12 @@ class DriveWatch:
     def settled(self, stamps: Stamps) -> bool:
         """At the end of a run: True when no drive got a setpoint of a motion last; those of silent units brake before.
 
-        Then nobody says that it lives, so that a drive that stands is left alone.
+        Then nobody says that it lives, so that a drive that stands is left alone. A unit that lives sends its stop, so
+        that this holds also of one that has not been heard since this process was held up.
         """
         self._node.take_inputs()
-        moved = [unit for unit in self._judged() if unit in self._newest and is_commanded(self._newest[unit])]
+        moved = [unit for unit, block in self._newest.items() if unit in self._units and is_commanded(block)]
+        moved = [unit for unit in moved if not self._stops_alone(unit)]
         for unit in self._watchdog.silent(moved, begun=True, most=LAST_PATIENCE):
             self._stop(unit, stamps)
             moved.remove(unit)

@@ -245,6 +245,19 @@ def test_at_the_end_only_what_moves_is_waited_for(bus):
     assert [stop.unit for stop in bus.stops] == ["y"]
 
 
+@pytest.mark.parametrize("bus", [(PTP, "x", "y")], indirect=True)
+def test_at_the_end_a_drive_brakes_whose_unit_was_not_heard_since_the_clock_was_held_up(bus):
+    """Seed 44, fault 347: nothing was said of how the drive of a dead spindle had braked."""
+    bus.watch.longest_pause = 0.2
+    bus.axis("x", 0, 1.0, 50.0)
+    bus.axis("y", 0, 1.0, 0.0)
+    bus.spin_until(lambda: not bus.look() and bus.watch._newest.keys() == {"x", "y"})
+    time.sleep(0.5)
+    assert not bus.look() and not bus.watch._known
+    bus.spin_until(lambda: bus.watch.settled(STAMPS) and bus.events)
+    assert [(stop.unit, stop.first_cycle) for stop in bus.stops] == [("x", 10)]
+
+
 @pytest.mark.parametrize("milliseconds", [1, 50, 200])
 def test_drives_are_looked_at_in_time_with_any_watchdog_time(milliseconds):
     """A clock that looks more seldom than half of the watchdog time takes itself for suspended each time."""
