@@ -23,7 +23,7 @@ def conditions(folder: Path, *, minutes: float, sets_clock: bool = False) -> Ite
     yield with_disk("disk full", partial(disks.full_disk, folder, domain))
     yield with_disk("slow disk", partial(disks.slow_disk, folder, domain))
     yield load.company("subscribers", load.SUBSCRIBERS, folder, domain)
-    yield load.company("foreign", load.FOREIGN_NODES, folder, domain)
+    yield load.company("foreign nodes", load.FOREIGN_NODES, folder, domain)
     yield load.company("late", 1, folder, domain)
     yield load.floods(folder, domain)
     yield load.two_machines(folder, domain)

@@ -145,7 +145,8 @@ def memory_pressure(folder: Path, domain: int) -> LoadRow:
     with started("program", folder, domain) as graph:
         free = max(64.0, psutil.virtual_memory().available / 2**20 - 1024.0 * SPARED)
         row.figures["MiB taken"] = float(int(free))
-        subprocess.run([sys.executable, "-c", MEMORY, str(int(free)), "3.0"], check=False)
+        done = subprocess.run([sys.executable, "-c", MEMORY, str(int(free)), "3.0"], check=False)
+        row.problems += [f"it could not be taken: status {done.returncode}"] if done.returncode else []
         finished(row, graph, "program")
     return row
 
@@ -199,38 +200,42 @@ def suspended(folder: Path, domain: int) -> LoadRow:
 
 COMPANY = """
 import sys, time, rclpy
+from rclpy.context import Context
+from std_msgs.msg import String
 from cnc_ptp import msg
 from cnc_ptp.nodes import process
-process.initialise()
-what, number = sys.argv[1], int(sys.argv[2])
-count = 0
+from cnc_ptp.nodes.topics import BLOCKS, EVENTS
+what, number, seconds = sys.argv[1], int(sys.argv[2]), float(sys.argv[3])
+count, executors, kept = 0, [], []
 def heard(message):
     global count
     count += 1
-from cnc_ptp.nodes.topics import BLOCKS, EVENTS
+def newcomer(name):
+    context = Context()
+    process.initialise(context)
+    node = rclpy.create_node(name, context=context, enable_rosout=False, start_parameter_services=False)
+    executors.append(process.EventsExecutor(context=context))
+    executors[-1].add_node(node)
+    return node
 if what == "subscribers":
-    node = rclpy.create_node("crowd", enable_rosout=False, start_parameter_services=False)
     for n in range(number):
+        node = newcomer(f"crowd{n}") if n % 20 == 0 else node
         node.create_subscription(msg.AxisBlock, ["x", "y", "z"][n % 3] + "/block", heard, BLOCKS)
-elif what == "foreign":
-    from std_msgs.msg import String
-    nodes = [rclpy.create_node(f"foreign{n}", enable_rosout=False) for n in range(number)]
-    writers = [node.create_publisher(String, f"foreign{n}/text", 10) for n, node in enumerate(nodes)]
-    node = nodes[0]
+elif what == "foreign nodes":
+    kept = [newcomer(f"foreign{n}").create_publisher(String, f"foreign{n}/text", 10) for n in range(number)]
 else:
-    node = rclpy.create_node("late", enable_rosout=False, start_parameter_services=False)
-    node.create_subscription(msg.CommandRecord, "commands", heard, EVENTS)
-executor = process.EventsExecutor()
-executor.add_node(node)
+    newcomer("late").create_subscription(msg.CommandRecord, "commands", heard, EVENTS)
 print("there", flush=True)
-end = time.monotonic() + float(sys.argv[3])
+end = time.monotonic() + seconds
 while time.monotonic() < end:
-    executor.spin_once(timeout_sec=0.05)
+    for executor in executors:
+        executor.spin_once(timeout_sec=0.05 / len(executors))
 print(count, flush=True)
-executor.shutdown()
-rclpy.try_shutdown()
+for executor in executors:
+    executor.shutdown()
+    executor.context.try_shutdown()
 """
-"""A program of its own on the domain of the machine: subscribers, foreign nodes, or one that comes late."""
+"""A program of its own on the domain of the machine. Each newcomer is a participant of DDS; 20 subscribers share one."""
 
 
 def company(what: str, number: int, folder: Path, domain: int) -> LoadRow:
@@ -241,7 +246,7 @@ def company(what: str, number: int, folder: Path, domain: int) -> LoadRow:
         environment = os.environ | {"ROS_DOMAIN_ID": str(domain)}
         done = subprocess.run(words, env=environment, capture_output=True, text=True, timeout=120, check=False)
         row.figures["messages that they got"] = float(done.stdout.split()[-1]) if done.returncode == 0 else -1.0
-        if done.returncode or (what != "foreign" and row.figures["messages that they got"] < 1.0):
+        if done.returncode or (what != "foreign nodes" and row.figures["messages that they got"] < 1.0):
             row.problems.append(f"they got nothing: {done.stdout} {done.stderr[-300:]}")
         finished(row, graph, "program")
     return row
