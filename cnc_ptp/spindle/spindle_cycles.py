@@ -76,6 +76,8 @@ class SpindleCycles:
             position, speed, acceleration = spindle.motion(cycle)
         elif speed == 0.0 and spindle.state == S.STOPPING:
             spindle.take(T.FINISH)
+        if speed == 0.0 and spindle.state == S.STANDSTILL:
+            acceleration = 0.0  # its ramp may end by a rounding error later
         actual = loop.actual_position(position, speed)
         setpoint = position, speed, acceleration, spindle.jerk(cycle)
         self._watch_following_error(cycle, setpoint)

@@ -63,7 +63,7 @@ def test_a_life_has_no_violation(seed: int) -> None:
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("seed", [200254, 200383, 200604, 200775, 200865, 200989])
+@pytest.mark.parametrize("seed", [200254, 200383, 200525, 200569, 200604, 200775, 200865, 200989, 400221, 401235])
 def test_seeds_that_have_found_something(seed: int) -> None:
     (machine,) = lives(300, seed)
     assert machine.violations == []

@@ -6,9 +6,10 @@ import math
 from itertools import pairwise
 from typing import Any
 
+import numpy as np
 import pytest
 from error_support import Refused, refused
-from machine_support import CYCLE_TIME, UnitBench, spindle_bench
+from machine_support import CYCLE_TIME, MILL, MachineBench, UnitBench, spindle_bench
 
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.spindle_states import SpindleMode
@@ -111,6 +112,21 @@ def test_speed_zero_and_the_end_of_m05() -> None:
         if cycle >= 300:
             assert reached[cycle] is zero[cycle]
     assert zero[0] and not zero[299] and zero[-1]
+
+
+@pytest.mark.parametrize(("rate", "cycles"), [(3707.4, 40), (3655.0, 10), (4359.8, 30), (2413.1, 30)])
+def test_a_spindle_that_stands_does_not_accelerate(rate: float, cycles: int) -> None:
+    """Up and down with one acceleration: where the speed is 0 again, rounding may leave a rest of the ramp."""
+    bench = MachineBench(machine=MILL, end_when_idle=False)
+    bench.run(0.01)
+    assert bench.give("s", "set_limits", max_acceleration=rate).accepted
+    assert bench.give("s", "start", speed_rpm=3000.0, direction="cw").accepted
+    bench.run(0.001 * cycles)
+    assert bench.give("s", "stop").accepted
+    bench.run(0.001 * cycles + 0.02)
+    stands = np.array(bench.column("s", "state")) == S.STANDSTILL
+    assert stands[-10:].all() and not stands[-20 - cycles]
+    assert not np.array(bench.column("s", "set_acceleration_deg_s2"))[stands].any()
 
 
 def test_a_zero_speed_of_0_is_still_reached() -> None:
