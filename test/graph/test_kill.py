@@ -72,6 +72,39 @@ def test_killed_node(running, node):
             assert recorded.states["/s/state"]["set_speed_rpm"][-1] == 0.0
 
 
+def test_a_clock_and_an_axis_that_die_together(running):
+    """The watchdog of the drive ends with the clock: nobody lets the drive brake, all others stop."""
+    graph, nodes, recording = running
+    for node in ("clock", "x"):
+        kill(nodes[node])
+    output = graph.finish(expect=1)
+    assert "P-ERR-26104 node 'clock'" in output and "P-ERR-26104 node 'x'" in output
+    assert wait_until_gone(nodes.values()) == []
+    recorded = verified(recording, whole=False)
+    check_every_reader_opens(recording)
+    check_ramps(recorded, skip="x", ended=True)
+    assert recorded.drive_stops == []
+    assert recorded.states["/s/state"]["set_speed_rpm"][-1] == 0.0
+
+
+def test_a_composed_run_that_is_killed(tmp_path):
+    """Everything ends with its process; the file can be read to its last whole chunk, and the next run starts."""
+    machine, program, recording = small_machine(tmp_path), tmp_path / "long.nc", tmp_path / "run.mcap"
+    program.write_text(LONG_PROGRAM.replace(" Z-20", "").replace("N40 Z0\n", ""))
+    with Running(machine, "--composed", "--program", program, "--record", recording) as graph:
+        graph.wait_until_recorded(recording, UNDER_WAY)
+        family = [each.pid for each in psutil.Process(graph.process.pid).children(recursive=True)]
+        kill(graph.process.pid)
+        graph.finish(expect=-signal.SIGKILL)
+    assert wait_until_gone(family) == []
+    recorded = verified(recording, whole=False)
+    assert not recorded.complete and recorded.last_cycle > 500
+    check_ramps(recorded, skip="x", ended=False)
+    program.write_text("N10 G00 X1\nM30\n")
+    with Running(machine, "--composed", "--program", program) as graph:
+        graph.finish(expect=0)
+
+
 @pytest.mark.parametrize("node", ["s", *long(["z", "channel", "plc", "clock"])])
 def test_killed_node_while_it_taps(tmp_path, node):
     """Spindle and axis come to rest; without their channel in step, as their events say."""
