@@ -1,6 +1,7 @@
 """A short campaign: a few faults of each kind, at moments that a seed gives; `make campaign` is the long one."""
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -47,6 +48,26 @@ def test_floods_of_each_topic_and_service(tmp_path: Path, ros_domain: int) -> No
     row = load.floods(tmp_path, ros_domain)
     assert row.problems == [] and row.figures["unanswered"] == 0.0
     assert row.figures["messages"] > 3000.0 and row.figures["calls"] > 3000.0
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    "condition",
+    [
+        load.busy_processors,
+        partial(load.company, "subscribers", load.SUBSCRIBERS),
+        partial(load.company, "foreign nodes", load.FOREIGN_NODES),
+        partial(load.company, "late", 1),
+        load.two_machines,
+        partial(load.soak, 0.5),
+    ],
+    ids=("busy processors", "subscribers", "foreign nodes", "a late one", "two machines", "half a minute"),
+)
+def test_a_condition_that_a_machine_does_not_notice(
+    condition: Callable[[Path, int], LoadRow], tmp_path: Path, ros_domain: int
+) -> None:
+    row = condition(tmp_path, ros_domain)
+    assert row.problems == [] and row.figures["cycles"] > 4000.0 and row.figures["lost blocks"] == 0.0
 
 
 @pytest.mark.long
