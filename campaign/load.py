@@ -235,7 +235,7 @@ for executor in executors:
     executor.shutdown()
     executor.context.try_shutdown()
 """
-"""A program of its own on the domain of the machine. Each newcomer is a participant of DDS, subscribers are 20 together."""
+"""A program of its own on the domain of the machine. Each newcomer is a participant of DDS, 20 subscribers are one."""
 
 
 def company(what: str, number: int, folder: Path, domain: int) -> LoadRow:
