@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import asyncio
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
+from typing import Protocol
 
 from cnc_ptp.client.faults import unknown_unit
 from cnc_ptp.errors import CncError
@@ -23,24 +26,43 @@ LONGEST_ROUND_TRIP = 0.15
 STANDS = "the axis stops; press the key again"
 
 
+class Timer(Protocol):
+    """What asyncio gives for a call that is due later."""
+
+    def cancel(self) -> None: ...
+
+
+def call_later(seconds: float, call: Callable[[], None]) -> Timer:
+    return asyncio.get_running_loop().call_later(seconds, call)
+
+
 @dataclass(slots=True)
 class Press:
     """A key that is held."""
 
     sequence: int
-    heard: float
+    until: float
+    """When the next message must be here."""
+    silence: Timer
 
 
 class Jogs:
     """The keys that are held on a page, by axis.
 
-    A jog begins with `sequence` 1. It ends with the first message that is missing for 0.2 s: what comes then belongs to
-    the past (a socket that has stalled delivers everything at once), so that a new one needs a new press of the key.
+    A jog begins with `sequence` 1. Each message must be here 0.2 s after the one before was sent, however long that one
+    was on its way. Otherwise the jog ends: what comes then belongs to the past (a socket that has stalled delivers
+    everything at once), so that a new one needs a new press of the key.
     """
 
-    def __init__(self, session: Page, *, now: Callable[[], float] = time.monotonic) -> None:
+    def __init__(
+        self,
+        session: Page,
+        *,
+        now: Callable[[], float] = time.monotonic,
+        later: Callable[[float, Callable[[], None]], Timer] = call_later,
+    ) -> None:
         self._session = session
-        self._now = now
+        self._now, self._later = now, later
         self._held: dict[str, Press] = {}
         self._quickest = float("inf")
         self._quickest_at = 0.0
@@ -66,7 +88,7 @@ class Jogs:
             self._break_off(axis, reason)
             return
         self._session.hub.require_face().jog(axis, velocity, user=self._session.user)
-        self._hold(axis, velocity, sequence)
+        self._hold(axis, velocity, sequence, late)
 
     def _objection(self, axis: str, sequence: int, late: float) -> CncError | None:
         """Why a message does not count; `late` in s."""
@@ -78,14 +100,23 @@ class Jogs:
             text = f"axis {axis}: the jog came {late:.2f} s late"
             return CncError(JOG_ENDED, text, STANDS) if late > LATE else None
         assert press is not None
-        if late > LATE or sequence <= press.sequence or self._now() - press.heard > PATIENCE:
-            return CncError(JOG_ENDED, f"axis {axis}: the messages of the jog came too late", STANDS)
+        if late > LATE or sequence <= press.sequence or self._now() > press.until:
+            return too_late(axis)
         return None
 
-    def _hold(self, axis: str, velocity: float, sequence: int) -> None:
-        self._held[axis] = Press(sequence, self._now())
+    def _hold(self, axis: str, velocity: float, sequence: int, late: float) -> None:
+        before = self._held.get(axis)
+        if before is not None:
+            before.silence.cancel()
+        seconds = PATIENCE - late - 0.5 * self._round_trip
+        silence = self._later(seconds, partial(self._fall_silent, axis))
+        self._held[axis] = Press(sequence, self._now() + seconds, silence)
         if sequence == 1:
             self._note(axis, f"jog with {velocity:g} begins")
+
+    def _fall_silent(self, axis: str) -> None:
+        """The next message is not here in time."""
+        self._break_off(axis, too_late(axis))
 
     def take_ping(self, message: Message) -> float:
         """`ping`: time (ms, of the page's clock), round_trip (ms) of the one before. Raises CncError 26233."""
@@ -131,7 +162,10 @@ class Jogs:
 
     def _stop(self, axis: str) -> None:
         face = self._session.hub.face
-        if self._held.pop(axis, None) is not None and face is not None:
+        press = self._held.pop(axis, None)
+        if press is not None:
+            press.silence.cancel()
+        if press is not None and face is not None:
             face.jog(axis, 0.0, user=self._session.user)
             self._note(axis, "jog ends")
 
@@ -139,3 +173,7 @@ class Jogs:
         """For the recording: who jogs."""
         face = self._session.hub.require_face()
         face.note(round(face.time / face.cycle_time), f"{self._session.user}: axis {axis}: {what}")
+
+
+def too_late(axis: str) -> CncError:
+    return CncError(JOG_ENDED, f"axis {axis}: the messages of the jog came too late", STANDS)

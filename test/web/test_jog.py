@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import pytest
 from web_support import MILL, site
 
+from cnc_ptp.web import jog
 from cnc_ptp.web.faces.machine_face import offline_face
 from cnc_ptp.web.jog import Jogs
 
@@ -48,6 +49,13 @@ def standing_site():
     return site(connect=lambda: offline_face(MILL, stands=True))
 
 
+@pytest.fixture
+def without_wall_clock(monkeypatch):
+    """The time of the machine passes in steps here: what the server measures meanwhile means nothing."""
+    monkeypatch.setattr(jog, "PATIENCE", 600.0)
+
+
+@pytest.mark.usefixtures("without_wall_clock")
 @pytest.mark.parametrize("phase", range(0, TIMES, 10))
 def test_the_page_is_killed_and_the_axis_stops(phase):
     """Ten of a hundred times in each case, at another place of the jog."""
@@ -69,6 +77,7 @@ def test_the_page_is_killed_and_the_axis_stops(phase):
     asyncio.run(story())
 
 
+@pytest.mark.usefixtures("without_wall_clock")
 def test_the_socket_stalls_and_the_axis_stops():
     async def story():
         async with standing_site() as here:
@@ -85,6 +94,7 @@ def test_the_socket_stalls_and_the_axis_stops():
     asyncio.run(story())
 
 
+@pytest.mark.usefixtures("without_wall_clock")
 def test_the_key_comes_up():
     async def story():
         async with standing_site() as here:
@@ -112,7 +122,21 @@ class Heard:
         hub = SimpleNamespace(face=face, require_face=lambda: face, right=right)
         self.face = face
         self.session = SimpleNamespace(hub=hub, user="anna", role="operator", send=self.told.append)
-        self.under_test = Jogs(self.session, now=lambda: self.now)
+        self.timers = []
+        self.under_test = Jogs(self.session, now=lambda: self.now, later=self.later)
+
+    def later(self, seconds, call):
+        timer = SimpleNamespace(at=self.now + seconds, call=call, cancelled=False)
+        timer.cancel = lambda: setattr(timer, "cancelled", True)
+        self.timers.append(timer)
+        return timer
+
+    def pass_by(self, seconds):
+        """Time, with the calls that are due."""
+        self.now += seconds
+        for timer in [each for each in self.timers if not each.cancelled and each.at <= self.now]:
+            timer.cancel()
+            timer.call()
 
     def message(self, sequence, *, sent):
         self.under_test.take({"type": "jog", "axis": "x", "velocity": 5.0, "sequence": sequence, "time": sent * 1e3})
@@ -132,6 +156,34 @@ def test_messages_of_the_past_start_nothing():
         "axis x: the messages of the jog came too late; the axis stops; press the key again"
     ]
     assert heard.told[0]["number"] == 26243
+
+
+@pytest.mark.parametrize(("late", "round_trip"), [(0.0, 0.0), (0.1, 0.0), (0.0, 0.14), (0.05, 0.14)])
+def test_the_stop_comes_a_fifth_of_a_second_after_the_last_message_was_sent(late, round_trip):
+    """However long that message was on its way: 0.2 s less its lateness and half the round trip."""
+    heard = Heard()
+    heard.under_test.take_ping({"type": "ping", "time": heard.now * 1e3, "round_trip": round_trip * 1e3})
+    for number in (1, 2):
+        heard.message(number, sent=heard.now)
+        heard.pass_by(0.05)
+    heard.pass_by(late)
+    heard.message(3, sent=heard.now - late)
+    left = 0.2 - late - round_trip / 2
+    heard.pass_by(left - 1e-3)
+    assert heard.jogs == [5.0, 5.0, 5.0]
+    heard.pass_by(2e-3)
+    assert heard.jogs == [5.0, 5.0, 5.0, 0.0]
+    assert [message["number"] for message in heard.told] == [26243]
+    heard.message(4, sent=heard.now)
+    assert heard.jogs == [5.0, 5.0, 5.0, 0.0], "of a jog that has ended"
+
+
+def test_a_key_that_came_up_has_no_end_of_its_own():
+    heard = Heard()
+    heard.message(1, sent=heard.now)
+    heard.under_test.take_stop({"type": "jog_stop", "axis": "x"})
+    heard.pass_by(1.0)
+    assert heard.jogs == [5.0, 0.0] and heard.told == []
 
 
 def test_a_press_of_the_past_is_none():
