@@ -126,6 +126,7 @@ audit: setup $(AUDIT)/.tools
 sbom: $(AUDIT)/.tools
 	@mkdir -p build
 	$(AUDIT)/bin/cyclonedx-py requirements --output-reproducible --output-file build/sbom.json requirements.lock
+	$(PYTHON) tools/sbom_web.py build/sbom.json
 
 clean:
 	rm -rf $(VENV) $(AUDIT) build *.egg-info cnc_ptp/msg cnc_ptp/srv cnc_ptp/action cnc_ptp/*.so cnc_ptp/compiled/library
