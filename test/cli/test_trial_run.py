@@ -6,14 +6,17 @@ import signal
 import subprocess
 import sys
 import time
+from types import SimpleNamespace
 
 import pytest
 from commands_support import MILL, changed_mill
 
-from cnc_ptp.commands.commissioning.trial_run import run_trial
+from cnc_ptp.commands.commissioning.trial_run import TrialProgress, run_trial
+from cnc_ptp.commissioning import progress_lines
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.plc.scenario import Entry
-from cnc_ptp.protocol.blocks import Command
+from cnc_ptp.protocol.blocks import Command, PlcBlock
+from cnc_ptp.protocol.unit import PLC
 
 
 @pytest.fixture(scope="module")
@@ -73,6 +76,21 @@ def test_interrupted_runs_stop_on_their_ramps_and_are_status_1(tmp_path):
     assert running.returncode == 1
     assert "failed: P-ERR-26106 the run was interrupted (SIGINT); everything stops on its ramps" in errors
     assert output == "" and "Traceback" not in errors
+
+
+def test_a_program_gets_lines(monkeypatch, capsys):
+    """5 % or more from one line to the next."""
+    monkeypatch.setenv(progress_lines.WANTED, "1")
+    with TrialProgress("friction of x", 300) as progress:
+        for first in range(0, 330, 10):
+            progress.show({PLC: SimpleNamespace(block=PlcBlock(first, 10))})
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[:2] == ["friction of x: 6 %", "friction of x: 13 %"]
+    assert lines[-1] == "friction of x: 100 %" and len(lines) == 15
+    monkeypatch.delenv(progress_lines.WANTED)
+    with TrialProgress("friction of x", 300) as progress:
+        progress.show({PLC: SimpleNamespace(block=PlcBlock(0, 300))})
+    assert capsys.readouterr().err == ""
 
 
 def test_a_terminal_sees_a_bar():

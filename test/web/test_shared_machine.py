@@ -224,13 +224,17 @@ def test_a_report_in_pieces():
 
     async def story():
         told = []
-        script = "import sys,time;print('warning',file=sys.stderr,flush=True);time.sleep(0.3);print('r'*300000)"
+        script = (
+            "import sys,time;print('warning',file=sys.stderr,flush=True);time.sleep(0.3);"
+            "print('friction of x: 40 %',file=sys.stderr,flush=True);time.sleep(0.3);print('r'*300000)"
+        )
         process = await asyncio.create_subprocess_exec(
             "python3", "-c", script, stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.STDOUT
         )
         text = await Tasks._read(1, process, told.append)
         await process.wait()
-        assert text.startswith("warning\n") and text.count("r") > 300_000
+        assert text.startswith("warning\nrrr") and text.count("r") > 300_000
         assert told[0] == {"type": "progress", "task": 1, "text": "warning"}
+        assert told[1] == {"type": "progress", "task": 1, "text": "friction of x: 40 %", "percent": 40}
 
     asyncio.run(story())

@@ -36,6 +36,9 @@ def test_an_axis_is_identified_and_its_values_accepted(look, server, fake, what)
     server.do(fake.tell({"type": "progress", "task": 1, "text": "speed 3 of 8"}))
     page.wait_for_selector("[role=status]:text-is('speed 3 of 8')")
     assert page.get_attribute("progress", "value") is None  # how far it is is not known
+    server.do(fake.tell({"type": "progress", "task": 1, "text": "friction of x: 35 %", "percent": 35}))
+    page.wait_for_selector("[role=status]:text-is('friction of x: 35 %')")
+    assert page.get_attribute("progress", "value") == "35"
     server.do(fake.tell(result(task=7, values="of another page")))
     server.do(fake.tell(result(values=VALUES)))
     page.wait_for_selector("[role=status]:text-is('Finished.')")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import sys
 from array import array
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
@@ -15,6 +17,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from cnc_ptp.commands.console import print_faults
 from cnc_ptp.commands.run.simulate import Result, interrupted
+from cnc_ptp.commissioning import progress_lines
 from cnc_ptp.interrupt import EndRequest
 from cnc_ptp.machine.offline import Outputs
 from cnc_ptp.machine.wiring import build_units
@@ -109,12 +112,18 @@ def _keep(kept: dict[str, dict[str, array[float]]], fields: Mapping[str, Iterabl
         columns["cycle"].extend(range(block.first_cycle, block.first_cycle + block.count))
 
 
+PERCENT = 5
+"""From one line of progress to the next, at least."""
+
+
 class TrialProgress:
-    """A bar over the machine time, on a terminal only."""
+    """A bar over the machine time on a terminal, or lines where a program wants them."""
 
     def __init__(self, label: str, cycles: int) -> None:
         console = Console(stderr=True)
         self._on = console.is_terminal
+        self._lines = progress_lines.WANTED in os.environ
+        self._label, self._cycles, self._said = label, max(cycles, 1), 0
         self._progress = Progress(
             TextColumn("{task.description}"),
             BarColumn(),
@@ -138,5 +147,11 @@ class TrialProgress:
     def show(self, outputs: Outputs) -> None:
         """Progress of the run. (The bar draws itself ten times per second, however often it is updated.)"""
         plc = outputs[PLC].block
-        if self._on and isinstance(plc, PlcBlock):
-            self._progress.update(self._task, completed=plc.first_cycle + plc.count)
+        if not isinstance(plc, PlcBlock):
+            return
+        done = plc.first_cycle + plc.count
+        if self._on:
+            self._progress.update(self._task, completed=done)
+        elif self._lines and (percent := min(100, 100 * done // self._cycles)) >= self._said + PERCENT:
+            self._said = percent
+            print(progress_lines.line(self._label, percent), file=sys.stderr, flush=True)

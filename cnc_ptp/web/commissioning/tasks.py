@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from cnc_ptp.client.faults import unknown_unit
+from cnc_ptp.commissioning import progress_lines
 from cnc_ptp.errors import CncError
 from cnc_ptp.web.commissioning.changed_machine import write_changed
 from cnc_ptp.web.numbers import BAD_MESSAGE, NOT_IDENTIFIED
@@ -105,6 +106,7 @@ class Tasks:
                 stdout=asyncio.subprocess.PIPE,
                 stderr=asyncio.subprocess.STDOUT,
                 preexec_fn=be_nice,
+                env=os.environ | {progress_lines.WANTED: "1"},
             )
             self._running[number] = process
             if number in self._cancelled:
@@ -120,15 +122,18 @@ class Tasks:
 
     @staticmethod
     async def _read(number: int, process: asyncio.subprocess.Process, tell: Tell) -> str:
-        """All that it says, to its end; each piece is sent as progress. Of a long report the end is kept."""
+        """Its report; of a long one the end is kept. Each piece is sent as progress, with `percent` if it says so."""
         assert process.stdout is not None
         text = b""
         while piece := await process.stdout.read(1 << 16):
             text = (text + piece)[-MOST_TEXT:]
             lines = piece.decode(errors="replace").strip().splitlines()
             if lines:
-                tell({"type": "progress", "task": number, "text": lines[-1]})
-        return text.decode(errors="replace")
+                percent = progress_lines.percent_of(lines[-1])
+                how_far = {} if percent is None else {"percent": percent}
+                tell({"type": "progress", "task": number, "text": lines[-1], **how_far})
+        lines = text.decode(errors="replace").splitlines(keepends=True)
+        return "".join(line for line in lines if progress_lines.percent_of(line) is None)
 
     def cancel(self, number: int) -> None:
         """Raises CncError 26256 for a task that does not run."""

@@ -13,7 +13,11 @@ export function followTask(app, show) {
     else bar.value = 100;
   };
   const ends = [
-    store.on("progress", (message) => message.task === task.number && say(status, message.text || "")),
+    store.on("progress", (message) => {
+      if (message.task !== task.number) return;
+      say(status, message.text || "");
+      if (message.percent !== undefined) bar.value = message.percent;
+    }),
     store.on("result", (message) => {
       if (message.task !== task.number) return;
       run(false);
