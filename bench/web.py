@@ -32,7 +32,7 @@ from bench.graph import missing_samples
 from bench.graph_run import process_seconds
 from bench.jobs import MACHINE, long_program
 from bench.plc import p99
-from bench.web_jogs import KEEP_PRESSES, End, Observer, Proxy, collect, killed, own_browser, released, stalled
+from bench.web_jogs import KEEP_PRESSES, Ends, Observer, Proxy, collect, killed, own_browser, released, stalled
 from cnc_ptp.msg import LatenessHistogram
 from cnc_ptp.nodes.topics import LATENESS
 from cnc_ptp.nodes.unit.lateness import Lateness
@@ -102,7 +102,9 @@ class WebRun:
     positions: float = nan
     """A second, on a page."""
     reactions: list[float] = field(default_factory=list)
-    ends: dict[str, list[End]] = field(default_factory=dict)
+    ends: dict[str, Ends] = field(default_factory=dict)
+    pressed_for_nothing: int = 0
+    """Presses of a button after which nothing moved within 2 s."""
     blocks_lost: float = 0.0
     missing: int = 0
 
@@ -127,9 +129,11 @@ def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
     yield Figure("positions that a page shows", run.positions, "1/s", goal=20.0)
     yield Figure("jog button to first changed setpoint, median", median(run.reactions), "ms")
     yield Figure("jog button to first changed setpoint, p99", p99(run.reactions), "ms", goal=60.0, at_most=True)
-    for kind, ends in run.ends.items():
+    yield Figure("jog buttons that moved nothing within 2 s", run.pressed_for_nothing, "times")
+    for kind, (ends, ended_before) in run.ends.items():
         begins = [end.begins for end in ends]
         yield Figure(f"jog, {kind}: times", len(ends), "")
+        yield Figure(f"jog, {kind}: had ended before", ended_before, "times")
         yield Figure(f"jog, {kind}: stop begins after, median", median(begins), "ms")
         yield Figure(f"jog, {kind}: stop begins after, largest", max(begins), "ms", goal=250.0, at_most=True)
         yield Figure(f"jog, {kind}: stands after, largest", max(end.stands for end in ends), "ms")
@@ -242,6 +246,7 @@ def jogs(playwright: Any, port: int, effort: Effort, run: WebRun) -> None:
             page = open_page(browser, proxy.address, command=True)
             count = effort.scaled(STALLED)
             run.ends["socket stalled"] = collect("socket stalled", count, lambda: stalled(page, proxy, observer, held))
+        run.pressed_for_nothing = observer.pressed_for_nothing
 
 
 def scopes(playwright: Any, address: str, server: psutil.Process, seconds: float, run: WebRun) -> None:

@@ -15,7 +15,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -63,6 +63,13 @@ class End:
     """Largest velocity after the standstill."""
 
 
+class Ends(NamedTuple):
+    """Those of one kind, and how many jogs had ended before."""
+
+    found: list[End]
+    ended_before: int
+
+
 @dataclass(frozen=True, slots=True)
 class Moved:
     """A block of an axis: when it was published (ns of the wall clock), its first cycle, its speeds."""
@@ -86,6 +93,8 @@ class Observer:
         self._subscription = self._node.poll(msg.AxisBlock, block_topic(axis), lambda _: None, BLOCKS)
         self._read = deserialize_message
         self._blocks: deque[Moved] = deque(maxlen=KEPT_BLOCKS)
+        self.pressed_for_nothing = 0
+        """Presses of a button that have not moved the axis."""
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._run, daemon=True)
 
@@ -227,6 +236,7 @@ def jog(page: Any, observer: Observer, held: random.Random) -> None:
             observer.wait("a jog begins", lambda: observer.speed > 1.0, BEGINNING)
             break
         page.mouse.up()  # a page that is too slow at the moment does not jog
+        observer.pressed_for_nothing += 1
     else:
         raise TimeoutError(f"no jog in {MOST_TRIES} tries: {page.evaluate(NOTICES)}")
     time.sleep(held.uniform(*HELD))
@@ -239,10 +249,10 @@ def ended(observer: Observer, moment: int) -> End | None:
     return observer.end_after(moment)
 
 
-def collect(kind: str, count: int, one_end: Callable[[], End | None]) -> list[End]:
+def collect(kind: str, count: int, one_end: Callable[[], End | None]) -> Ends:
     """So many ends, with a line after each tenth of them. Raises RuntimeError where most jogs end before."""
     found: list[End] = []
-    for _ in range(MOST_TRIES * count):
+    for tries in range(1, MOST_TRIES * count + 1):
         if (end := one_end()) is None:
             continue
         found.append(end)
@@ -250,7 +260,7 @@ def collect(kind: str, count: int, one_end: Callable[[], End | None]) -> list[En
             latest = max(each.begins for each in found)
             print(f"web: {kind}, {len(found)} of {count}: the latest stop after {latest:.0f} ms", file=sys.stderr)
         if len(found) == count:
-            return found
+            return Ends(found, tries - count)
     raise RuntimeError(f"{len(found)} of {MOST_TRIES * count} jogs lasted until their end: the computer is too busy")
 
 
