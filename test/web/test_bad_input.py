@@ -1,6 +1,8 @@
 """What pages, browsers and networks do wrong, and how each of it ends."""
 
 import asyncio
+from contextlib import suppress
+from itertools import pairwise
 
 import pytest
 from aiohttp import WSMsgType
@@ -11,6 +13,9 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.web.access.security import require_secured, tls_context
 from cnc_ptp.web.faces.machine_face import offline_face
 from cnc_ptp.web.options import WebOptions, listen
+
+LONGEST_GAP = 1.0
+"""Seconds between two positions, 0.04 where nothing else runs: computers of tests are busy."""
 
 
 def run(story, **options):
@@ -75,7 +80,7 @@ def test_a_message_of_an_unknown_type():
     run(story)
 
 
-def test_ten_thousand_messages_a_second():
+def test_ten_thousand_messages_at_once():
     async def story(here):
         page = await here.page()
         for _ in range(10_000):
@@ -92,6 +97,40 @@ def test_ten_thousand_messages_a_second():
         ]
         assert code == 1008
         assert (await (await here.page()).ask("ping"))["ok"]
+
+    run(story)
+
+
+async def flood(page):
+    """10,000 messages in a second, also after the page was cut off: it does not listen."""
+    with suppress(ConnectionError):
+        for _ in range(100):
+            for _ in range(100):
+                await page.send(type="ping", id=1)
+            await asyncio.sleep(0.01)
+
+
+async def watch_positions(page, seen):
+    """When positions of x have come, and where x was."""
+    while True:
+        message = await page.wait_for("state", lambda state: "set_position" in state["units"].get("x", {}))
+        seen.append((asyncio.get_running_loop().time(), message["units"]["x"]["set_position"]))
+
+
+def test_another_page_goes_on_getting_positions_while_one_sends_ten_thousand_messages_a_second():
+    async def story(here):
+        operator, other, page = await here.page(), await here.page(commands=False), await here.page(commands=False)
+        assert (await operator.command("x", "move_velocity", velocity=1.0))["ok"]
+        seen, now = [], asyncio.get_running_loop().time
+        watching = asyncio.create_task(watch_positions(other, seen))
+        begin = now()
+        await flood(page)
+        end = now()
+        watching.cancel()
+        assert (await end_of(page.socket))[1] == 1008
+        times, places = zip(*seen, strict=True)
+        assert [*places] == sorted({*places})
+        assert max(later - earlier for earlier, later in pairwise([begin, *times, end])) < LONGEST_GAP
 
     run(story)
 

@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 
+import numpy as np
 import psutil
 import pytest
 from web_support import MILL, site
@@ -12,7 +13,7 @@ from web_support import MILL, site
 from cnc_ptp.errors import CncError
 from cnc_ptp.web.faces.machine_face import offline_face
 from cnc_ptp.web.faces.program_watch import Load
-from cnc_ptp.web.programs.backplot import HEAD, LOOK_EVERY, MOST_POINTS, Drawing, draw
+from cnc_ptp.web.programs.backplot import COLUMNS, HEAD, LOOK_EVERY, MOST_POINTS, Drawing, draw
 from cnc_ptp.web.programs.drawing_office import KEPT, SLOTS, Cancelled, DrawingOffice
 
 ENDLESS = "P1 = 0\n$WHILE P1 >= 0\nP1 = P1 + 1\nG01 X[P1/1000] F1000\nX0\n$ENDWHILE\nM30\n"
@@ -38,6 +39,13 @@ def test_a_drawing_that_is_no_longer_wanted_ends_with_the_next_look(face):
     _, points, flags, _ = HEAD.unpack_from(drawn)
     assert flags == CUT_OFF
     assert LOOK_EVERY < points <= 2 * LOOK_EVERY + 1
+
+
+def test_a_break_of_the_path_has_its_line(face):
+    drawn = draw(drawing(face, "G01 X10 F1000\nG74 X1\nX20\nX30\nM30\n"))
+    lines = np.frombuffer(drawn, dtype="<f4", offset=HEAD.size).reshape(-1, COLUMNS)
+    assert [*lines[:, -1]] == [0, 1, 2, 3, 4]
+    assert [*np.isnan(lines[:, 0])] == [False, False, True, False, False]
 
 
 async def begun(office):

@@ -67,6 +67,65 @@ def test_without_the_command_nothing_is_jogged(look, fake):
     assert jogs(fake) == []
 
 
+def test_a_jog_that_begins_while_the_connection_breaks_is_none_afterwards(look, fake):
+    page = look(command=True)
+    until(page, "app.roundTrip.time < 150")
+    fake.holder = None  # as a page that is gone holds it no longer
+    page.evaluate("() => { app.connection._socket.close(); app.jogger.start('x', 10); }")
+    until(page, "app.store.link !== 'open'")
+    until(page, "app.store.link === 'open' && app.store.machine !== null")
+    page.click("text=Take command")
+    until(page, "app.store.holds")
+    page.wait_for_timeout(300)
+    assert jogs(fake) == []
+    assert page.locator(".jog.held").count() == 0
+
+
+def test_a_jog_that_the_axis_or_the_server_refuses_is_told_and_ends(look, server, fake):
+    page = look(command=True)
+    event = "axis x: jog refused: the axis is in Disabled, it must be in Standstill or jogging; nothing was changed"
+    error = "axis x: jog refused: the machine file closes it to pages; nothing was changed"
+    told = {"type": "error", "number": 26218, "text": error, "cause": "", "remedy": ""}
+    for number, (text, tell) in enumerate(
+        (
+            (event, lambda: fake.raise_alarm(event, severity="warning", number=23005)),
+            (error, lambda: fake.tell(told)),
+        ),
+        1,
+    ):
+        press_jog(page)
+        page.wait_for_selector("[data-jog=x].held")
+        server.do(tell())
+        page.wait_for_selector(f".notice.error >> text={text}")
+        eventually(page, lambda count=number: len([m for m in fake.received if m["type"] == "jog_stop"]) == count)
+        assert page.locator(".jog.held").count() == 0
+        sent = len(jogs(fake))
+        page.wait_for_timeout(300)
+        assert len(jogs(fake)) == sent
+        page.mouse.up()
+    assert page.locator(".notice").count() == 2
+
+
+def test_a_warning_of_a_jog_that_is_carried_out_or_of_another_axis_ends_none(look, server, fake):
+    page = look(command=True)
+    press_jog(page)
+    eventually(page, lambda: jogs(fake))
+    server.do(fake.raise_alarm("axis x: jog: jerk 1 mm/s³ is above A/T", severity="warning", number=23012))
+    server.do(fake.raise_alarm("axis y: jog refused: it is at its soft limit", severity="warning", source="y"))
+    page.wait_for_selector(".notice >> text=axis y: jog refused")
+    sent = len(jogs(fake))
+    eventually(page, lambda: len(jogs(fake)) > sent + 2)
+    assert not fake.has_received(type="jog_stop")
+    page.mouse.up()
+
+
+def test_a_page_without_the_command_does_not_tell_refused_jogs(look, server, fake):
+    page = look()
+    server.do(fake.raise_alarm("axis x: jog refused: it is at its soft limit", severity="warning"))
+    page.wait_for_selector("text=1 alarm")
+    assert page.locator(".notice").count() == 0
+
+
 def test_jog_by_keys(look, fake):
     page = look(command=True)
     page.keyboard.down("ArrowRight")

@@ -39,6 +39,33 @@ def test_each_page_is_accessible(look, server, fake, name):
     assert violations(page) == []
 
 
+@pytest.mark.parametrize("scheme", ["dark", "light"])
+def test_a_contrast_that_is_bad_in_one_scheme_alone_is_found(look, scheme):
+    """Whatever the page stands in when it is looked at."""
+    for stands_in in ("dark", "light"):
+        page = look("alarms", scheme=stands_in)
+        page.wait_for_selector("main h2")
+        assert violations(page) == []
+        page.evaluate(
+            """scheme => {
+            const sheet = new CSSStyleSheet();
+            sheet.replaceSync(`[data-theme=${scheme}] main h2 { color: #777; background: #888; }`);
+            document.adoptedStyleSheets = [sheet];
+        }""",
+            scheme,
+        )
+        assert {(where, rule) for where, rule, _, _ in violations(page)} == {(scheme, "color-contrast")}, stands_in
+
+
+def test_operate_is_accessible_on_a_phone(look, server, fake):
+    page = look(command=True, size=PHONE)
+    server.do(fake.raise_alarm("axis x: following error 2.5 mm > 1 mm"))
+    server.do(fake.request())
+    page.wait_for_selector("text=1 alarm")
+    page.wait_for_timeout(400)
+    assert violations(page) == []
+
+
 TABS = {
     "x": ["Online", "PTP test", "Functions", "Dynamics", "Coupling", "Compensation", "Identify", "Circle test", "Parameters", "Drive"],
     "s": ["Online", "Functions", "Curve", "Parameters"],

@@ -88,10 +88,56 @@ def test_paths_are_broken_where_a_point_has_no_place(look):
         const path = { count: 5, rows };
         const { pairs, box } = it.geometry(path);
         const coarse = it.coarser(Uint32Array.from([0, 1, 1, 2, 2, 3, 3, 4, 6, 7]), 3);
-        return [[...pairs], box.min, box.max, [...coarse], it.colours(path, 'feed').fastest, it.pointsUpTo({ count: 3, rows: Float32Array.from([0,0,0,0,1, 0,0,0,0,3, 0,0,0,0,8]) }, 3)];
+        return [[...pairs], box.min, box.max, [...coarse], it.colours(path, 'feed').fastest];
     }"""
     )
-    assert found == [[0, 1, 3, 4], [0, 0, 0], [6, 5, 5], [0, 3, 3, 4, 6, 7], 200, 2]
+    assert found == [[0, 1, 3, 4], [0, 0, 0], [6, 5, 5], [0, 3, 3, 4, 6, 7], 200]
+
+
+def test_what_is_done_are_the_pairs_of_lines_up_to_the_active_one_also_behind_breaks(look):
+    """Lines 1 to 9, a motion each, after the start at line 0; homing in lines 2, 4 and 6, as older servers say it too."""
+    page = look("alarms")
+    found = page.evaluate(
+        """async () => {
+        const it = await import('/static/watch/toolpath.js');
+        const shown = (atBreak) => {
+            const lines = Array.from({ length: 10 }, (_, line) => line);
+            const place = (line) => ([2, 4, 6].includes(line) ? [NaN, NaN, NaN, 0, atBreak(line)] : [line, 0, 0, 100, line]);
+            const path = { count: lines.length, rows: Float32Array.from(lines.flatMap(place)) };
+            const { pairs } = it.geometry(path);
+            return [[...pairs], lines.map((line) => it.pairsUpTo(path, pairs, line))];
+        };
+        return [shown((line) => line), shown(() => 0)];
+    }"""
+    )
+    assert found == [[[0, 1, 7, 8, 8, 9], [0, 1, 1, 1, 1, 1, 1, 1, 2, 3]]] * 2
+
+
+def test_of_a_coarser_level_no_more_is_drawn_than_is_done(look):
+    page = look("watch")
+    page.wait_for_selector("text=2,999 segments")
+    found = page.evaluate(
+        """() => {
+        const { scene } = document.querySelector('.backplot');
+        const drawn = () => {
+            const { count } = scene._shape.drawRange;
+            return [scene._shape.index.count / 2, count / 2, count ? scene._shape.index.array[count - 1] : null];
+        };
+        scene._setStep(64, 0.4);
+        return [0, 63, 64, 1000, 2998, 2999].map((pairs) => { scene.setShown(pairs); return drawn(); })
+            .concat((scene.setShown(1000), scene._setStep(8, 0.5), [drawn()]), (scene._setStep(1, 1), [drawn()]));
+    }"""
+    )
+    assert found == [
+        [47, 0, None],
+        [47, 0, None],
+        [47, 1, 64],
+        [47, 15, 960],
+        [47, 46, 2944],
+        [47, 47, 2999],
+        [375, 125, 1000],
+        [2999, 1000, 1000],
+    ]
 
 
 def test_a_recording_has_a_time_and_nothing_to_operate(browser):

@@ -7,7 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from web_browser_support import PATIENCE, PHONE, InThread, eventually, open_page, until
+from web_browser_support import PATIENCE, PHONE, TABLET, InThread, eventually, open_page, until
 from web_support import EXAMPLES, MILL, ROOT, waiting_mill
 
 from cnc_ptp.commands.run.web import words_of
@@ -114,6 +114,63 @@ def test_a_held_button_moves_the_axis_and_its_end_stops_it(mill):
     page.mouse.up()
 
 
+def test_a_finger_on_a_tablet_moves_the_axis_and_stops_it_when_it_is_lifted(mill):
+    page = mill(size=TABLET, touch=True)
+    page.wait_for_selector(".jog")
+    assert page.evaluate("matchMedia('(pointer: coarse)').matches && navigator.maxTouchPoints > 0")
+    assert page.evaluate("document.documentElement.scrollWidth") <= TABLET["width"]
+    finger = Finger(page, "Jog X +")
+    hold_until(page, finger.press, finger.lift, "app.store.units.x.set_position > 25")  # longer than a long press
+    page.wait_for_selector("[aria-label='Jog X +'].held")
+    finger.lift()
+    until(page, "app.store.units.x.state === 'Standstill'")
+    there = page.evaluate("app.store.units.x.set_position")
+    page.wait_for_timeout(300)
+    assert page.evaluate("app.store.units.x.set_position") == there
+    assert page.locator(".jog.held").count() == 0
+
+
+class Finger:
+    """Of a person who touches a button. Playwright only taps."""
+
+    def __init__(self, page, name):
+        self._devtools = page.context.new_cdp_session(page)
+        button = page.locator(f"[aria-label='{name}']")
+        button.scroll_into_view_if_needed()
+        box = button.bounding_box()
+        self._place = {"x": box["x"] + box["width"] / 2, "y": box["y"] + box["height"] / 2}
+
+    def press(self):
+        self._devtools.send("Input.dispatchTouchEvent", {"type": "touchStart", "touchPoints": [self._place]})
+
+    def lift(self):
+        self._devtools.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+
+
+def test_a_jog_that_the_axis_refuses_is_told_and_its_button_released(mill, programs):
+    (programs / "slow.nc").write_text("%SLOW\nN10 G1 X100 F60\nN20 M30\n", encoding="utf-8")
+    page = mill()
+    refused = ".notice.error >> text=/axis x: jog refused: .*; nothing was changed/"
+    page.evaluate("app.command('x', 'power', { enabled: false })")
+    until(page, "app.store.units.x.state === 'Disabled'")
+    press_jog(page)
+    page.wait_for_selector(refused)
+    assert "the axis is in Disabled" in page.inner_text(refused)
+    page.wait_for_selector(".jog.held", state="detached")
+    page.mouse.up()
+    page.click("[aria-label='Close notice']")
+    page.evaluate("app.command('x', 'power', { enabled: true })")
+    until(page, "app.store.units.x.state === 'Standstill'")
+    load(page, "slow.nc")
+    page.click("button.primary >> text=Start")
+    until(page, "app.store.units.x.set_velocity > 0")
+    press_jog(page)
+    page.wait_for_selector(refused)
+    page.wait_for_selector(".jog.held", state="detached")
+    page.mouse.up()
+    page.click("button:text-is('Reset')")
+
+
 async def watch_velocity(hub, samples):
     """Time (s, of this computer) and set velocity of x, every few ms, until it stands."""
     end = time.monotonic() + PATIENCE / 1000
@@ -130,14 +187,19 @@ def press_jog(page):
 
 
 def jog_until(page, expression):
-    """Holds the button. A page that is too busy to repeat its jog in time ends it: it is pressed again."""
+    """Holds the button with the mouse."""
+    hold_until(page, lambda: press_jog(page), page.mouse.up, expression)
+
+
+def hold_until(page, press, lift, expression):
+    """A page that is too busy to repeat its jog in time ends it: it is pressed again."""
     for _ in range(20):
-        press_jog(page)
-        for _ in range(20):
+        press()
+        for _ in range(40):
             if page.evaluate(f"() => ({expression})"):
                 return
             page.wait_for_timeout(50)
-        page.mouse.up()
+        lift()
     raise AssertionError(f"no jog until {expression}")
 
 

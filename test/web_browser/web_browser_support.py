@@ -18,6 +18,7 @@ CHROMIUM = os.environ.get("CHROMIUM") or shutil.which("chromium") or shutil.whic
 FLAGS = ["--no-sandbox", "--enable-unsafe-swiftshader", "--disable-dev-shm-usage"]
 DESKTOP = {"width": 1440, "height": 900}
 PHONE = {"width": 390, "height": 844}
+TABLET = {"width": 1024, "height": 768}
 PATIENCE = 20_000
 """ms; the computers of tests are busy."""
 
@@ -122,10 +123,19 @@ def eventually(page: Any, condition: Callable[[], Any]) -> None:
 
 
 def open_page(
-    browser: Any, url: str, *, size: dict[str, int] | None = None, scheme: str = "light", command: bool = False
+    browser: Any,
+    url: str,
+    *,
+    size: dict[str, int] | None = None,
+    scheme: str = "light",
+    command: bool = False,
+    touch: bool = False,
 ) -> Any:
-    """A page that is connected and shows its elements, whose modules come later; `command`: it holds the command."""
-    page = browser.new_page(viewport=size or DESKTOP, color_scheme=scheme)
+    """A page that is connected and shows its elements, whose modules come later.
+
+    `command`: it holds the command; `touch`: its screen is touched.
+    """
+    page = browser.new_page(viewport=size or DESKTOP, color_scheme=scheme, has_touch=touch)
     page.set_default_timeout(PATIENCE)
     page.complaints = Complaints(page)
     page.goto(url)

@@ -143,7 +143,7 @@ class Pen:
         elif isinstance(motion, CircularMove):
             self._arc(motion, block.source.line)
         elif isinstance(motion, HomeAxes):
-            self._break()
+            self._break(block.source.line)
 
     def _line(self, motion: LinearMove, line: int) -> None:
         feed, kinematics = 0.0 if motion.rapid else motion.feed * 60.0, motion.kinematics
@@ -176,9 +176,9 @@ class Pen:
         self._values += [position[place] if place >= 0 else 0.0 for place in self._places]
         self._values += (feed, line)
 
-    def _break(self) -> None:
+    def _break(self, line: int) -> None:
         """Where the next motion begins is not known: a point without a place."""
-        self._values += (float("nan"), float("nan"), float("nan"), 0.0, 0.0)
+        self._values += (float("nan"), float("nan"), float("nan"), 0.0, line)
 
     def points(self) -> npt.NDArray[np.float32]:
         """(n, 5)"""

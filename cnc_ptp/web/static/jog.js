@@ -3,6 +3,7 @@ import { LONGEST_FOR_JOGS } from "./round_trip.js";
 
 const PERIOD = 50; // ms
 const LATEST = 170; // ms between two messages; the axis ends its jog by itself after 200
+const REFUSED = /^axis (\S+): jog refused/;
 
 export class Jogger {
   constructor(app) {
@@ -17,6 +18,7 @@ export class Jogger {
     app.store.on("link", stop);
     app.store.on("operator", () => app.store.holds || this.stopAll());
     app.store.on("jog_ended", (message) => this._ended(message));
+    for (const topic of ["event", "error"]) app.store.on(topic, (message) => this._refused(message));
   }
 
   /** Notified with an axis and its velocity, 0 at the end. */
@@ -39,13 +41,17 @@ export class Jogger {
       return;
     }
     const jog = { velocity, sequence: 0, sent: performance.now(), timer: 0 };
+    jog.timer = setInterval(() => this._beat(axis, jog), PERIOD); // before the first message, whose failure ends it
     this._held.set(axis, jog);
-    this._beat(axis, jog);
-    jog.timer = setInterval(() => this._beat(axis, jog), PERIOD);
     this._tell(axis, velocity);
+    this._beat(axis, jog);
   }
 
   _beat(axis, jog) {
+    if (this._held.get(axis) !== jog) {
+      clearInterval(jog.timer);
+      return;
+    }
     const now = performance.now();
     const late = now - jog.sent > LATEST;
     jog.sent = now;
@@ -70,6 +76,14 @@ export class Jogger {
     const jog = this._held.get(message.axis);
     if (jog) this._forget(message.axis, jog);
     this.app.notices.show("warning", message.text, message.remedy);
+  }
+
+  /** Jogs have no answer: the axis tells of a refusal as an event, the server as an error, which is shown in any case. */
+  _refused({ type, text, remedy }) {
+    const axis = REFUSED.exec(text)?.[1];
+    if (!axis || !this.app.store.holds) return;
+    this.stop(axis);
+    if (type === "event") this.app.notices.show("error", text, remedy);
   }
 
   _forget(axis, jog) {

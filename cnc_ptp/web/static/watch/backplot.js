@@ -3,7 +3,7 @@ import { button, h, panel, press, say, select, toggle } from "../dom.js";
 import { fixed } from "../format.js";
 import { PathScene } from "./scene.js";
 import { measuredPath } from "./measured_path.js";
-import { colours, geometry, pointsUpTo, readPath, scaleColour } from "./toolpath.js";
+import { colours, geometry, pairsUpTo, readPath, scaleColour } from "./toolpath.js";
 
 const TURN = 10; // degrees of a key
 const NO_PROGRAM = 26242;
@@ -102,7 +102,7 @@ export function backplot(app) {
     if (isOld && performance.now() > next) load(active);
     if (!path) return;
     const only = done.getAttribute("aria-pressed") === "true" && active;
-    scene.setShown(only ? Math.min(pairs.length / 2, pointsUpTo(path, line)) : pairs.length / 2);
+    scene.setShown(only ? pairsUpTo(path, pairs, line) : pairs.length / 2);
   }
 
   views.addEventListener("change", () => scene.look(views.value));

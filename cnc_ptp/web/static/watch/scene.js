@@ -5,7 +5,7 @@ import {
 } from "../vendor/three.js";
 
 import { Pace } from "./pace.js";
-import { coarser } from "./toolpath.js";
+import { coarser, pairsWithin } from "./toolpath.js";
 
 const VIEWS = { iso: [1, -1.2, 0.9], top: [0, 0, 1], front: [0, -1, 0], side: [1, 0, 0], turning: [0, -1, 0] };
 const UP = { top: [0, 1, 0], turning: [1, 0, 0] };
@@ -55,6 +55,7 @@ export class PathScene {
     shape.setAttribute("color", new BufferAttribute(colours, 3, true));
     this._levels = new Map([[1, new BufferAttribute(pairs, 1)]]);
     shape.setIndex(this._levels.get(1));
+    this._step = 1;
     this._shape = shape;
     this._shown = pairs.length / 2;
     const lines = new LineSegments(shape, new LineBasicMaterial({ vertexColors: true }));
@@ -91,7 +92,7 @@ export class PathScene {
   setShown(pairs) {
     if (pairs === this._shown) return;
     this._shown = pairs;
-    this._setRange(1);
+    this._setRange();
     this.draw();
   }
 
@@ -106,13 +107,15 @@ export class PathScene {
     if (!this._shape) return;
     if (!this._levels.has(step)) this._levels.set(step, new BufferAttribute(coarser(this._levels.get(1).array, step), 1));
     this._shape.setIndex(this._levels.get(step));
-    this._setRange(step);
+    this._step = step;
+    this._setRange();
     this.draw();
   }
 
-  _setRange(step) {
-    const [all, level] = [this._levels.get(1).count / 2, this._levels.get(step).count];
-    this._shape.setDrawRange(0, 2 * Math.round((level / 2) * (this._shown / Math.max(1, all))));
+  /** Of the level that is drawn: the pairs up to the last point that is shown. */
+  _setRange() {
+    const last = this._shown ? this._levels.get(1).array[2 * this._shown - 1] : -1;
+    this._shape.setDrawRange(0, 2 * pairsWithin(this._levels.get(this._step).array, (point) => point <= last));
   }
 
   setTool(x, y, z) {

@@ -78,12 +78,17 @@ export function colours({ count, rows }, by) {
   return { bytes, fastest, last };
 }
 
-/** The first point whose line is behind `line`; points are taken to go forward through the program. */
-export function pointsUpTo({ count, rows }, line) {
-  let [low, high] = [0, count];
+/** How many pairs end at `line` or before it; points are taken to go forward through the program. */
+export function pairsUpTo({ rows }, pairs, line) {
+  return pairsWithin(pairs, (point) => rows[point * FLOATS + 4] <= line);
+}
+
+/** How many pairs at the beginning end at a point that `isWithin`; behind them none does. */
+export function pairsWithin(pairs, isWithin) {
+  let [low, high] = [0, pairs.length / 2];
   while (low < high) {
     const middle = (low + high) >> 1;
-    if (rows[middle * FLOATS + 4] <= line) low = middle + 1;
+    if (isWithin(pairs[2 * middle + 1])) low = middle + 1;
     else high = middle;
   }
   return low;
