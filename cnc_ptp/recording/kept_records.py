@@ -7,7 +7,7 @@ from pathlib import Path
 from tempfile import TemporaryFile
 from typing import IO
 
-PIECE = 1 << 16
+PIECE = 1 << 13
 """Bytes in memory from which on they are put away: a recording of a day has 150 MB of them."""
 
 
