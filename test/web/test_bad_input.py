@@ -3,7 +3,7 @@
 import asyncio
 
 import pytest
-from aiohttp import WSMsgType
+from aiohttp import WSMsgType, WSServerHandshakeError
 from aiohttp.test_utils import unused_port
 from web_support import MILL, site
 
@@ -414,6 +414,24 @@ def test_too_many_pages(monkeypatch):
         )
 
     monkeypatch.setattr("cnc_ptp.web.server.MOST_SESSIONS", 1)
+    run(story)
+
+
+def test_sockets_that_have_not_said_hello_are_pages_too(monkeypatch):
+    """However many come at once; the place of one that has ended is free."""
+
+    async def story(here):
+        await here.token()
+        opened = await asyncio.gather(*(here.client.ws_connect("/ws") for _ in range(5)), return_exceptions=True)
+        sockets = [each for each in opened if not isinstance(each, Exception)]
+        refused = [each.status for each in opened if isinstance(each, WSServerHandshakeError)]
+        assert (len(sockets), refused) == (2, [503] * 3)
+        await sockets[0].close()
+        while (await here.client.get("/ws")).status == 503:
+            await asyncio.sleep(0.01)
+        await here.page()
+
+    monkeypatch.setattr("cnc_ptp.web.server.MOST_SESSIONS", 2)
     run(story)
 
 
