@@ -220,7 +220,7 @@ class Session:
             self.abort()
 
     async def _leave(self) -> None:
-        """Its reader hears of the end, which ends this, too; a page that stays is cut off."""
+        """Its reader gets the end, and ends this, too; a page that stays is cut off."""
         self._messages.end()
         await self.close()
         await asyncio.sleep(LONGEST_STALL)

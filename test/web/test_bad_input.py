@@ -11,6 +11,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.web.access.security import require_secured, tls_context
 from cnc_ptp.web.faces.machine_face import offline_face
 from cnc_ptp.web.options import WebOptions, listen
+from cnc_ptp.web.programs.programs import ProgramFolder
 
 
 def run(story, **options):
@@ -186,11 +187,28 @@ def test_no_cookie():
     run(story)
 
 
-BAD_NAME = "is no name of a program: letters, digits, _ . + - and .nc, .ngc, .cnc, .tap, .mpf, .spf"
+BAD_NAME = (
+    "is no name of a program: at most 80 ASCII letters, digits, blanks, _ . + -, "
+    "at first a letter, digit or _, at last .nc, .ngc, .cnc, .tap, .mpf, .spf"
+)
 
 
 @pytest.mark.parametrize(
-    "name", ["../part.nc", "a/b.nc", "/etc/x.nc", "<script>.nc", ".nc", "part.py", "..", "", "a\0.nc"]
+    "name",
+    [
+        "../part.nc",
+        " a.nc",
+        "\u00e4.nc",
+        "a" * 78 + ".nc",
+        "a/b.nc",
+        "/etc/x.nc",
+        "<script>.nc",
+        ".nc",
+        "part.py",
+        "..",
+        "",
+        "a\0.nc",
+    ],
 )
 def test_a_name_that_no_program_may_have(name, tmp_path):
     async def story(here):
@@ -198,12 +216,17 @@ def test_a_name_that_no_program_may_have(name, tmp_path):
         answer = await here.client.post("/api/programs", params={"name": name}, data=b"M30\n", headers=headers)
         error = await answer.json()
         assert (answer.status, error["number"]) == (400, 26240)
-        assert error["text"] == f"'{name}' {BAD_NAME}; nothing was read or written"
+        assert error["text"] == f"'{name[:80]}' {BAD_NAME}; nothing was read or written"
         assert [*folder.iterdir()] == []
 
     folder = tmp_path / "programs"
     folder.mkdir()
     run(story, programs=str(folder))
+
+
+@pytest.mark.parametrize("name", ["part 2.nc", "_a+b-c.1.NC", f"{'a' * 77}.nc"])
+def test_a_name_that_a_program_may_have(name, tmp_path):
+    assert ProgramFolder(str(tmp_path)).save(name, b"M30\n") == (name, 4)
 
 
 def test_reading_and_loading_outside_of_the_folder(tmp_path):

@@ -93,7 +93,7 @@ class Face(ABC):
     async def ask(
         self, unit: str, command: str, arguments: Mapping[str, Any], *, user: str, require: Callable[[], None] = nothing
     ) -> Reply:
-        """Gives a command. `require` is called when it is its turn, and raises why it is not sent any more.
+        """Gives a command. `require` is called when it is its turn, and raises why it is not sent then.
 
         Raises the refusal of the unit, and CncError 22001, 22002, 26111, 26136, 26171, 26218, 26261.
         """
