@@ -12,7 +12,7 @@ PLACE = "    spindles: [s]\n"
 def run(story, **options):
     async def told():
         async with site(**options) as here:
-            await story(here)
+            await asyncio.wait_for(story(here), 60.0)
 
     asyncio.run(told())
 

@@ -90,9 +90,7 @@ def test_a_page_whose_connection_is_full_loses_the_command(monkeypatch):
             connection.pause_reading()
             for _ in range(16):
                 session.send({"type": "event", "text": "x" * (1 << 20)})
-            begin = asyncio.get_running_loop().time()
-            await other.wait_for("operator", lambda told: told["holder"] is None)
-            assert asyncio.get_running_loop().time() - begin < 5.0
+            await asyncio.wait_for(other.wait_for("operator", lambda told: told["holder"] is None), 10.0)
             assert session not in here.hub.sessions
             assert (await other.ask("take_command"))["ok"]
             connection.resume_reading()
