@@ -113,11 +113,11 @@ class DataRoutes:
         seconds, until = (number(request.query.get(name, "0")) for name in ("seconds", "until"))
         if self._snapshot_runs.locked():
             raise CncError(TOO_MANY_MESSAGES, "snapshot: another one is on its way", f"{NOTHING}; wait for it")
-        async with self._snapshot_runs:
-            with tempfile.TemporaryDirectory(prefix="cnc_ptp-") as folder:
-                file = Path(folder) / "snapshot.mcap"
+        with tempfile.TemporaryDirectory(prefix="cnc_ptp-") as folder:
+            file = Path(folder) / "snapshot.mcap"
+            async with self._snapshot_runs:  # not while it is sent: who takes it slowly keeps nobody from another one
                 first = await self._hub.require_face().snapshot(str(file), seconds, until)
-                return await sent(request, file, {"X-First-Cycle": str(first)})
+            return await sent(request, file, {"X-First-Cycle": str(first)})
 
 
 async def sent(request: web.Request, file: Path, fields: Mapping[str, str]) -> web.StreamResponse:

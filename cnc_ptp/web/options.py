@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import importlib.util
+import os
 import socket
 from dataclasses import dataclass, field
 
@@ -13,6 +14,8 @@ from cnc_ptp.web.numbers import NO_AIOHTTP, NO_PORT
 HOST = "127.0.0.1"
 DEFAULT_PORT = 8080
 NOTHING = "nothing was started"
+NICENESS = 5
+"""Of the server: below the nodes of a machine."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,3 +79,8 @@ def listen(host: str, port: int) -> socket.socket:
         taken = "another program listens there" if error.errno == errno.EADDRINUSE else str(error.strerror)
         raise CncError(NO_PORT, f"web: {host} port {port}: {taken}", f"{NOTHING}, give another one") from None
     return listening
+
+
+def be_nice() -> None:
+    """Called once: by a run in the process that it starts, and otherwise when the server begins."""
+    os.nice(NICENESS)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Awaitable, Callable
+from functools import partial
 from typing import Any
 
 from cnc_ptp.client.faults import unknown_unit
@@ -84,8 +85,15 @@ class PageMessages:
             raise
 
     async def _ask(self, message: Message, unit: str, command: str, arguments: dict[str, Any]) -> Message:
-        reply = await self._hub.require_face().ask(unit, command, arguments, user=self._session.user)
+        face = self._hub.require_face()
+        require = partial(self._require_still, f"{face.kinds[unit]} {unit}: {command}")
+        reply = await face.ask(unit, command, arguments, user=self._session.user, require=require)
         return answer(message, cycle=reply.cycle, job=reply.job, warning=reply.message, values=dict(reply.values))
+
+    def _require_still(self, what: str) -> None:
+        """A command has waited for others. Raises CncError 26236, 26239 where its page may give it no longer."""
+        self._session.require_login()
+        self._hub.right.require(self._session, what)
 
     def _load(self, message: Message) -> Answering:
         """A program of the folder, or its text."""

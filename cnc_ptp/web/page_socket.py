@@ -40,6 +40,11 @@ class PageSocket(web.WebSocketResponse):
                 self._is_leaving = False
         return await super().close(code=code, message=message, drain=drain)
 
+    def abort(self) -> None:
+        """The connection ends now, without what it has not sent; a farewell would wait behind that."""
+        if (transport := self._request.transport) is not None:
+            transport.abort()
+
     async def _say_too_large(self) -> None:
         error = too_large()
         await self.send_str(frame({"type": "error", **error_fields(error)}))

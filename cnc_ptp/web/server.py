@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from itertools import count
 from typing import Any
 
@@ -42,6 +44,8 @@ class Server:
     def __init__(self, hub: Hub, access: Access, names: Names, *, words: Words = no_words) -> None:
         """`words` that MDI completes."""
         self.hub, self.access = hub, access
+        self._places: Counter[str] = Counter()
+        """User -> pages that are open, or have not said hello yet."""
         self._static = StaticFiles()
         self.app = web.Application(middlewares=[make_guard(names)], client_max_size=LARGEST_MESSAGE)
         self.app.on_startup.append(self._begin)
@@ -97,24 +101,34 @@ class Server:
 
     async def _socket(self, request: web.Request) -> web.StreamResponse:
         login = self.access.login_of(request)
-        of_user = sum(session.user == login.user for session in self.hub.sessions)
-        if of_user >= MOST_OF_USER and self.access.needs_login:
+        with self._place(login):
+            socket = PageSocket(request, heartbeat=SILENCE)
+            await socket.prepare(request)
+            if await self._is_own_page(socket, login):
+                session = Session(self.hub, socket, self.access, login, number=next(NUMBERS))
+                self.hub.add(session)
+                try:
+                    await session.run()
+                finally:
+                    self.hub.remove(session)
+        return socket
+
+    @contextmanager
+    def _place(self, login: Login) -> Iterator[None]:
+        """That of a page, from before its socket is there until it has ended. Raises CncError 26245."""
+        if self._places[login.user] >= MOST_OF_USER and self.access.needs_login:
             reason = f"the limit of open pages of {login.user} is reached, {MOST_OF_USER}"
             raise CncError(TOO_MANY_SESSIONS, reason, f"{NOTHING}; close one")
-        if len(self.hub.sessions) >= MOST_SESSIONS:
-            raise CncError(
-                TOO_MANY_SESSIONS, f"the limit of open pages is reached, {MOST_SESSIONS}", f"{NOTHING}; close one"
-            )
-        socket = PageSocket(request, heartbeat=SILENCE)
-        await socket.prepare(request)
-        if await self._is_own_page(socket, login):
-            session = Session(self.hub, socket, self.access, login, number=next(NUMBERS))
-            self.hub.add(session)
-            try:
-                await session.run()
-            finally:
-                self.hub.remove(session)
-        return socket
+        if self._places.total() >= MOST_SESSIONS:
+            reason = f"the limit of open pages is reached, {MOST_SESSIONS}"
+            raise CncError(TOO_MANY_SESSIONS, reason, f"{NOTHING}; close one")
+        self._places[login.user] += 1
+        login.pages += 1
+        try:
+            yield
+        finally:
+            self._places[login.user] -= 1
+            login.pages -= 1
 
     async def _is_own_page(self, socket: web.WebSocketResponse, login: Login) -> bool:
         """Its first message is `hello` with its token; others get the reason why they are not wanted."""

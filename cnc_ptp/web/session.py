@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
-from aiohttp import WSCloseCode, WSMsgType, web
+from aiohttp import WSCloseCode, WSMsgType
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import CycleBlock
@@ -20,6 +20,7 @@ from cnc_ptp.web.faces.scope import Stream
 from cnc_ptp.web.numbers import SERVER_FAILED, SESSION_ENDED, TOO_MANY_MESSAGES
 from cnc_ptp.web.page import Shared
 from cnc_ptp.web.page_messages import PageMessages
+from cnc_ptp.web.page_socket import PageSocket
 from cnc_ptp.web.protocol import Message, error_fields, frame, read_message, refusal
 from cnc_ptp.web.rate import Rate
 from cnc_ptp.web.view import View
@@ -38,9 +39,7 @@ LONGEST_STALL = 10.0
 class Session:
     """A page. Its messages are handled in their order, but for commands, which wait for their answers beside."""
 
-    def __init__(
-        self, hub: Shared, socket: web.WebSocketResponse, access: Access, login: Login, *, number: int
-    ) -> None:
+    def __init__(self, hub: Shared, socket: PageSocket, access: Access, login: Login, *, number: int) -> None:
         self.hub = hub
         self.user, self.role, self.number = login.user, login.role, number
         self._access, self.login = access, login
@@ -53,6 +52,7 @@ class Session:
         self._socket = socket
         self._outgoing: deque[str | bytes] = deque()
         self._something, self._is_sent = asyncio.Event(), asyncio.Event()
+        self._reader: asyncio.Task[None] | None = None
         self._rate = Rate(MOST_PER_SECOND, BURST)
         self._messages = PageMessages(self)
 
@@ -80,7 +80,7 @@ class Session:
         if len(self._outgoing) >= MOST_OUTGOING:
             self._is_cut_off = True
             self._outgoing.clear()
-            self.hub.keep(asyncio.create_task(self.abort()))
+            self.abort()
             return
         self._outgoing.append(data)
         self._is_sent.clear()
@@ -111,12 +111,15 @@ class Session:
     # from the page
 
     async def run(self) -> None:
-        """Until its socket closes."""
-        writer = asyncio.create_task(self._write())
+        """Until its socket closes, or it is cut off."""
+        self._reader, writer = asyncio.create_task(self._read()), asyncio.create_task(self._write())
         try:
-            await self._read()
+            await asyncio.wait([self._reader])
+            if not self._reader.cancelled():
+                self._reader.result()
         finally:
             self._messages.end()
+            self._reader.cancel()
             writer.cancel()
 
     async def _read(self) -> None:
@@ -198,21 +201,37 @@ class Session:
                 try:
                     async with asyncio.timeout(LONGEST_STALL):  # in Python 3.11 wait_for may swallow a cancel
                         await sending
-                except Exception:  # the socket, or what was to be sent
-                    await self.abort()
+                except TimeoutError:
+                    self.abort()
+                    return
+                except Exception:  # the socket, whose farewell may be under way, or what was to be sent
+                    await self._leave()
                     return
             self._is_sent.set()
 
     # the end
 
     async def close(self, code: int = WSCloseCode.GOING_AWAY, reason: str = "") -> None:
-        await self._socket.close(code=code, message=reason.encode()[:120])
+        """With a farewell; a page that does not even take that is cut off."""
+        try:
+            async with asyncio.timeout(LONGEST_STALL):
+                await self._socket.close(code=code, message=reason.encode()[:120])
+        except TimeoutError:
+            self.abort()
 
-    async def abort(self) -> None:
-        """A page that takes nothing does not answer a farewell either."""
+    async def _leave(self) -> None:
+        """Its reader gets the end, and ends this, too; a page that stays is cut off."""
         self._messages.end()
-        with suppress(ConnectionError, asyncio.TimeoutError):
-            await asyncio.wait_for(self.close(), 1.0)
+        await self.close()
+        await asyncio.sleep(LONGEST_STALL)
+        self.abort()
+
+    def abort(self) -> None:
+        """A page that takes nothing answers no farewell either: it loses the command, and its jogs end, at once."""
+        self._socket.abort()
+        if self._reader is not None:
+            self._reader.cancel()  # `run` ends, and what follows it
+        self._messages.end()
 
 
 def failed(error: Exception) -> CncError:

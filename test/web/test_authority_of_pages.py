@@ -12,7 +12,7 @@ PLACE = "    spindles: [s]\n"
 def run(story, **options):
     async def told():
         async with site(**options) as here:
-            await story(here)
+            await asyncio.wait_for(story(here), 60.0)
 
     asyncio.run(told())
 
@@ -55,12 +55,19 @@ def test_a_trajectory_of_a_page(tmp_path):
     run(story, machine=closed(tmp_path, "pages"))
 
 
-def test_a_jog_of_a_page(tmp_path):
+@pytest.mark.parametrize(
+    ("source", "number"), [("pages", "P-MACH-00084"), ("services", "P-MACH-00083"), ("topics", "P-MACH-00082")]
+)
+def test_a_jog_of_a_page(tmp_path, source, number):
+    """It leaves on a topic, whatever it was on its way to it; a jog of 0 is open."""
+
     async def story(here):
         page = await here.page()
         await page.send(type="jog", axis="x", velocity=5.0, sequence=1, time=0.0)
         error = await page.wait_for("error")
-        rule = "the machine file closes it to pages (closed_to_pages, P-MACH-00084)"
+        rule = f"the machine file closes it to {source} (closed_to_{source}, {number})"
         assert (error["number"], error["text"]) == (26218, f"axis x: jog refused: {rule}; nothing was changed")
+        here.hub.face.jog("x", 0.0, user="web")
+        here.hub.face.jog("y", 5.0, user="web")
 
-    run(story, machine=closed(tmp_path, "pages"))
+    run(story, machine=closed(tmp_path, source))

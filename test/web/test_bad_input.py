@@ -5,7 +5,7 @@ from contextlib import suppress
 from itertools import pairwise
 
 import pytest
-from aiohttp import WSMsgType
+from aiohttp import WSMsgType, WSServerHandshakeError
 from aiohttp.test_utils import unused_port
 from web_support import MILL, site
 
@@ -13,6 +13,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.web.access.security import require_secured, tls_context
 from cnc_ptp.web.faces.machine_face import offline_face
 from cnc_ptp.web.options import WebOptions, listen
+from cnc_ptp.web.programs.programs import ProgramFolder
 
 LONGEST_GAP = 1.0
 """Seconds between two positions, 0.04 where nothing else runs: computers of tests are busy."""
@@ -225,11 +226,28 @@ def test_no_cookie():
     run(story)
 
 
-BAD_NAME = "is no name of a program: letters, digits, _ . + - and .nc, .ngc, .cnc, .tap, .mpf, .spf"
+BAD_NAME = (
+    "is no name of a program: at most 80 ASCII letters, digits, blanks, _ . + -, "
+    "at first a letter, digit or _, at last .nc, .ngc, .cnc, .tap, .mpf, .spf"
+)
 
 
 @pytest.mark.parametrize(
-    "name", ["../part.nc", "a/b.nc", "/etc/x.nc", "<script>.nc", ".nc", "part.py", "..", "", "a\0.nc"]
+    "name",
+    [
+        "../part.nc",
+        " a.nc",
+        "\u00e4.nc",
+        "a" * 78 + ".nc",
+        "a/b.nc",
+        "/etc/x.nc",
+        "<script>.nc",
+        ".nc",
+        "part.py",
+        "..",
+        "",
+        "a\0.nc",
+    ],
 )
 def test_a_name_that_no_program_may_have(name, tmp_path):
     async def story(here):
@@ -237,12 +255,17 @@ def test_a_name_that_no_program_may_have(name, tmp_path):
         answer = await here.client.post("/api/programs", params={"name": name}, data=b"M30\n", headers=headers)
         error = await answer.json()
         assert (answer.status, error["number"]) == (400, 26240)
-        assert error["text"] == f"'{name}' {BAD_NAME}; nothing was read or written"
+        assert error["text"] == f"'{name[:80]}' {BAD_NAME}; nothing was read or written"
         assert [*folder.iterdir()] == []
 
     folder = tmp_path / "programs"
     folder.mkdir()
     run(story, programs=str(folder))
+
+
+@pytest.mark.parametrize("name", ["part 2.nc", "_a+b-c.1.NC", f"{'a' * 77}.nc"])
+def test_a_name_that_a_program_may_have(name, tmp_path):
+    assert ProgramFolder(str(tmp_path)).save(name, b"M30\n") == (name, 4)
 
 
 def test_reading_and_loading_outside_of_the_folder(tmp_path):
@@ -453,6 +476,24 @@ def test_too_many_pages(monkeypatch):
         )
 
     monkeypatch.setattr("cnc_ptp.web.server.MOST_SESSIONS", 1)
+    run(story)
+
+
+def test_sockets_that_have_not_said_hello_are_pages_too(monkeypatch):
+    """However many come at once; the place of one that has ended is free."""
+
+    async def story(here):
+        await here.token()
+        opened = await asyncio.gather(*(here.client.ws_connect("/ws") for _ in range(5)), return_exceptions=True)
+        sockets = [each for each in opened if not isinstance(each, Exception)]
+        refused = [each.status for each in opened if isinstance(each, WSServerHandshakeError)]
+        assert (len(sockets), refused) == (2, [503] * 3)
+        await sockets[0].close()
+        while (await here.client.get("/ws")).status == 503:
+            await asyncio.sleep(0.01)
+        await here.page()
+
+    monkeypatch.setattr("cnc_ptp.web.server.MOST_SESSIONS", 2)
     run(story)
 
 

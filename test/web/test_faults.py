@@ -9,11 +9,12 @@ from itertools import pairwise
 from types import SimpleNamespace
 
 import pytest
-from web_support import MILL, PATIENCE, site
+from web_support import MILL, PATIENCE, page_of, site, users_file
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.nodes.client.calls_in_flight import Call, CallsInFlight
 from cnc_ptp.web.access.guard import Names
+from cnc_ptp.web.access.users import remove
 from cnc_ptp.web.faces.machine_face import offline_face
 
 
@@ -91,6 +92,40 @@ def test_a_stop_waits_for_no_command(monkeypatch):
         assert slow.begun == ["move_absolute", "halt", "emergency_stop"]
 
     run(story)
+
+
+@pytest.mark.parametrize("end", ["close", "log_out", "take_over"])
+def test_commands_that_wait_end_with_the_right_of_their_page(monkeypatch, tmp_path, end):
+    """The first one is on its way and is carried out; the second one waits for it and is not sent."""
+    users = users_file(tmp_path)
+
+    async def story(here):
+        slow = Slow(here.hub.face, monkeypatch)
+        other, page = await page_of(here, "cora"), await page_of(here, "otto")
+        assert (await page.ask("take_command"))["ok"]
+        for id, target in ((11, 1), (12, 2)):
+            await page.send(type="command", id=id, unit="x", command="move_absolute", arguments={"target": target})
+        assert (await page.ask("ping"))["ok"]
+        await until(lambda: slow.begun)
+        if end == "close":
+            await page.socket.close()
+            await until(lambda: len(here.hub.sessions) == 1)
+        elif end == "log_out":
+            remove(users, "otto")
+        else:
+            assert (await other.ask("take_command", force=True))["ok"]
+        slow.may_end.set()
+        if end == "take_over":
+            refused = await page.wait_for("answer", lambda answer: answer["id"] == 12)
+            held = f"cora (page {other.hello['page']}) holds it"
+            text = f"axis x: move_absolute: this page does not hold the command, {held}; nothing was done"
+            assert (refused["number"], refused["text"]) == (26236, text)
+        for told in ("carried out", f"no answer, P-ERR-{26239 if end == 'log_out' else 26236}"):
+            text = f"otto: axis x: move_absolute, {told}"
+            assert await other.wait_for("event", lambda event, text=text: event["text"] == text)
+        assert slow.begun == ["move_absolute"]
+
+    run(story, users=users)
 
 
 def test_a_feed_hold_drops_nothing(monkeypatch):

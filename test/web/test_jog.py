@@ -6,7 +6,9 @@ from types import SimpleNamespace
 import pytest
 from web_support import MILL, site
 
+from cnc_ptp.nodes.bridge.jog_topics import JogTopics
 from cnc_ptp.web import jog
+from cnc_ptp.web.faces.live_face import PageJogs
 from cnc_ptp.web.faces.machine_face import offline_face
 from cnc_ptp.web.jog import Jogs
 
@@ -263,3 +265,41 @@ def test_each_message_is_passed_on_once():
     heard.message(2, sent=0.1)
     heard.message(2, sent=0.1)  # twice: something is wrong with the page
     assert heard.jogs == [5.0, 5.0, 5.0, 0.0]
+
+
+class Server:
+    """What a server sends to the PLC."""
+
+    def __init__(self, plc):
+        self._jogs = PageJogs()
+        self._plc, self._heard = plc, []
+        for axis in ("x", "y"):
+            self._jogs.add(axis, SimpleNamespace(publish=lambda message, axis=axis: self._take(axis, message)))
+
+    def _take(self, axis, message):
+        self._heard.append(self._plc.heard(axis, message, 0.0, paced=True))
+
+    def jog(self, axis, velocity, client="web"):
+        """The velocity that the PLC commands; None: it takes the message for an old one, or knows it already."""
+        self._jogs.send(axis, velocity, client)
+        return self._heard[-1]
+
+
+def test_a_server_that_begins_again_jogs_each_axis():
+    warned = []
+    plc = JogTopics(lambda *warning: warned.append(warning))
+    before, after = Server(plc), Server(plc)
+    for velocity in (5.0, 6.0, 0.0):
+        for axis in ("x", "y"):
+            assert before.jog(axis, velocity) == velocity
+    assert [after.jog(axis, 7.0) for axis in ("x", "y")] == [7.0, 7.0]
+    assert warned == []
+
+
+def test_a_server_that_begins_again_jogs_for_each_user():
+    plc = JogTopics(lambda *warning: None)
+    before, after = Server(plc), Server(plc)
+    for client in ("web:anna", "web:otto"):
+        assert [before.jog("x", velocity, client) for velocity in (5.0, 6.0, 0.0)] == [5.0, 6.0, 0.0]
+    for client in ("web:otto", "web:anna"):
+        assert [after.jog("x", velocity, client) for velocity in (7.0, 0.0)] == [7.0, 0.0]

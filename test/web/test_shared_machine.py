@@ -166,6 +166,23 @@ def test_a_snapshot_is_sent_piece_by_piece_and_alone(monkeypatch, users):
     run(story, users=users)
 
 
+def test_a_snapshot_that_is_taken_slowly_keeps_nobody_from_another_one(monkeypatch):
+    async def snapshot(file, seconds, until):
+        with open(file, "wb") as stream:
+            stream.truncate(int(seconds))
+        return 0
+
+    async def story(here):
+        monkeypatch.setattr(here.hub.face, "snapshot", snapshot)
+        await here.token()
+        slow = await here.client.get(f"/api/snapshot.mcap?seconds={24 << 20}")  # and reads no more than its head
+        other = await here.client.get("/api/snapshot.mcap?seconds=7")
+        assert (other.status, await other.read()) == (200, bytes(7))
+        slow.close()
+
+    run(story)
+
+
 def test_too_many_requests():
     async def story(here):
         await here.token()

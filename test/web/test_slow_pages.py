@@ -24,7 +24,7 @@ class Socket:
 
     send_bytes = send_str
 
-    async def close(self, **how):
+    def abort(self):
         self.closed = True
 
     def __aiter__(self):
@@ -72,9 +72,28 @@ def test_a_page_that_takes_nothing_for_long_is_cut_off(monkeypatch):
         session = slow_session(socket)
         running = asyncio.create_task(session.run())
         session.send({"type": "event"})
-        await asyncio.sleep(0.5)
+        await asyncio.wait_for(running, 5.0)
         assert socket.closed
-        running.cancel()
+
+    asyncio.run(story())
+
+
+def test_a_page_whose_connection_is_full_loses_the_command(monkeypatch):
+    """It reads nothing, and no farewell gets through."""
+    monkeypatch.setattr("cnc_ptp.web.session.LONGEST_STALL", 0.5)
+
+    async def story():
+        async with site() as here:
+            page, other = await here.page(), await here.page(commands=False)
+            session = here.hub.right.holder
+            connection = page.socket._response.connection.transport
+            connection.pause_reading()
+            for _ in range(16):
+                session.send({"type": "event", "text": "x" * (1 << 20)})
+            await asyncio.wait_for(other.wait_for("operator", lambda told: told["holder"] is None), 10.0)
+            assert session not in here.hub.sessions
+            assert (await other.ask("take_command"))["ok"]
+            connection.resume_reading()
 
     asyncio.run(story())
 
@@ -98,6 +117,35 @@ def test_diagnostics_of_a_node():
         level=DiagnosticStatus.WARN, name="x", message="late", values=[KeyValue(key="a", value="1")]
     )
     assert diagnostics_fields(status) == {"name": "x", "level": 1, "text": "late", "values": {"a": "1"}}
+
+
+class Broken(Socket):
+    """Takes no messages, and no farewell either."""
+
+    async def send_str(self, data):
+        raise ConnectionResetError
+
+    async def close(self, **how):
+        await asyncio.sleep(3600)
+
+
+@pytest.mark.parametrize("end", ["it sends", "it is closed"])
+def test_a_page_that_takes_no_farewell_is_cut_off(monkeypatch, end):
+    monkeypatch.setattr("cnc_ptp.web.session.LONGEST_STALL", 0.1)
+
+    async def story():
+        socket = Broken()
+        session = slow_session(socket)
+        running = asyncio.create_task(session.run())
+        await asyncio.sleep(0)
+        if end == "it sends":
+            session.send({"type": "event"})
+        else:
+            await session.close()
+        await asyncio.wait_for(running, 5.0)
+        assert socket.closed
+
+    asyncio.run(story())
 
 
 @pytest.mark.parametrize("name", ["source", "own"])

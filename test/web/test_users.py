@@ -6,6 +6,9 @@ import pty
 import ssl
 import subprocess
 import sys
+import time
+from functools import partial
+from itertools import count
 from types import SimpleNamespace
 
 import aiohttp
@@ -18,9 +21,10 @@ from web_support import PASSWORD, Page, log_in, page_of, site, users_file
 from cnc_ptp.cli import main
 from cnc_ptp.errors import CncError
 from cnc_ptp.web.access.access import Access
-from cnc_ptp.web.access.logins import IDLE_TIME, LONGEST_TIME, Logins
+from cnc_ptp.web.access.logins import IDLE_TIME, LONGEST_TIME, MOST, Logins
 from cnc_ptp.web.access.security import tls_context
 from cnc_ptp.web.access.users import Users, add_token, add_user, read_users, remove
+from cnc_ptp.web.hub import LOGINS_PERIOD
 from cnc_ptp.web.rate import Rate
 
 
@@ -63,6 +67,13 @@ def test_roles(users):
         ]
 
     run(story, users=users)
+
+
+async def page_of_machine(here, token):
+    page = Page(await here.client.ws_connect("/ws", headers={"Authorization": f"Bearer {token}"}))
+    await page.send(type="hello", token=token)
+    page.hello = await page.wait_for("hello")
+    return page
 
 
 def test_a_page_without_login(users):
@@ -137,9 +148,7 @@ def test_a_token_that_is_taken_back_ends_its_socket(users, change):
     token = add_token(users, "cell", "operator")
 
     async def story(here):
-        page = Page(await here.client.ws_connect("/ws", headers={"Authorization": f"Bearer {token}"}))
-        await page.send(type="hello", token=token)
-        await page.wait_for("hello")
+        page = await page_of_machine(here, token)
         change(users)
         assert (await page.wait_for("error"))["number"] == 26239
 
@@ -156,6 +165,32 @@ def test_a_login_ends_while_there_is_no_machine(users):
         assert (await page.wait_for("error"))["number"] == 26239
 
     run(story, users=users, connect=none, waits=False)
+
+
+def test_a_program_is_replaced_by_the_machine_that_commands(users, tmp_path):
+    """Each of its requests has a login of its own; not by another machine, nor with the command of a browser."""
+    programs = tmp_path / "programs"
+    programs.mkdir()
+    cell, robot = add_token(users, "cell", "operator"), add_token(users, "robot", "operator")
+
+    async def story(here):
+        async def status_of(token, query=""):
+            headers = {"Authorization": f"Bearer {token}"}
+            path = f"/api/programs?name=part.nc{query}"
+            return (await here.client.post(path, data=b"M30\n", headers=headers)).status
+
+        assert await status_of(cell) == 200
+        page = await page_of(here, "otto")
+        assert (await page.ask("take_command"))["ok"]
+        assert await status_of(cell, "&replace=1") == 403
+        assert (await page.ask("give_command"))["ok"]
+        machine = await page_of_machine(here, cell)
+        assert await status_of(cell, "&replace=1") == 403
+        assert (await machine.ask("take_command"))["ok"]
+        assert await status_of(cell, "&replace=1") == 200
+        assert await status_of(robot, "&replace=1") == 403
+
+    run(story, users=users, programs=str(programs))
 
 
 def test_wrong_passwords_do_not_lock_others_out(users, monkeypatch):
@@ -219,16 +254,45 @@ def test_a_token_of_a_machine(users):
     token = add_token(users, "cell", "operator")
 
     async def story(here):
-        headers = {"Authorization": f"Bearer {token}"}
-        socket = await here.client.ws_connect("/ws", headers=headers)
-        page = Page(socket)
-        await page.send(type="hello", token=token)
-        hello = await page.wait_for("hello")
-        assert (hello["user"], hello["role"]) == ("cell", "operator")
+        page = await page_of_machine(here, token)
+        assert (page.hello["user"], page.hello["role"]) == ("cell", "operator")
         answer = await here.client.get("/api/programs", headers={"Authorization": "Bearer guessed"})
         assert (answer.status, (await answer.json())["text"]) == (401, "the token is not known; nothing was done")
 
     run(story, users=users)
+
+
+@pytest.mark.parametrize("hours", [1, 13])
+def test_the_socket_of_a_machine_lasts_as_long_as_its_token(users, hours):
+    token = add_token(users, "cell", "operator")
+
+    async def story(here):
+        page = await page_of_machine(here, token)
+        here.access.logins._now = lambda: time.monotonic() + hours * 3600.0
+        await asyncio.sleep(2 * LOGINS_PERIOD)
+        assert (await page.ask("take_command"))["ok"]
+        remove(users, "cell")
+        assert (await page.wait_for("error"))["number"] == 26239
+
+    run(story, users=users)
+
+
+def test_logins_that_are_used_or_have_open_pages_are_remembered():
+    """Requests without a cookie, of whomever, do not end them."""
+
+    async def story(here):
+        await here.page()
+        [shown] = here.access.logins._logins
+        here.access.logins._now = partial(next, count(time.monotonic()))
+        used, left = (here.access.logins.begin("web", "commissioner") for _ in range(2))
+        for _ in range(2 * MOST):
+            here.access.logins.begin("web", "commissioner")
+            assert here.access.logins.find(used)
+        assert len(here.access.logins._logins) == MOST and here.access.logins.find(left) is None
+        assert (await here.client.get("/api/programs")).status == 200
+        assert shown in here.access.logins._logins
+
+    run(story)
 
 
 def test_logins_end():

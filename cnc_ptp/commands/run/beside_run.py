@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import signal
 import socket
 import subprocess
@@ -11,10 +10,8 @@ from types import TracebackType
 
 from cnc_ptp.protocol.notes import Note
 from cnc_ptp.ros_arguments import ros_arguments
-from cnc_ptp.web.options import WebOptions, listen, require_packages
+from cnc_ptp.web.options import WebOptions, be_nice, listen, require_packages
 
-NICENESS = 10
-"""While it starts beside a graph that has just begun."""
 PAGES_ENDED = 26211
 END_TIME = 8.0
 """Seconds that it may take to end."""
@@ -86,7 +83,3 @@ def listen_for_pages(options: WebOptions) -> socket.socket:
     if options.users is not None:
         Users(options.users)
     return listen(options.host, options.port)
-
-
-def be_nice() -> None:
-    os.nice(NICENESS)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import os
 import select
 import socket
 import sys
@@ -14,11 +13,8 @@ from cnc_ptp.nodes.forked import end_with
 from cnc_ptp.ros_arguments import ros_arguments
 from cnc_ptp.web.access.security import require_secured
 from cnc_ptp.web.faces.face import Face
-from cnc_ptp.web.options import WebOptions, listen, require_packages
+from cnc_ptp.web.options import WebOptions, be_nice, listen, require_packages
 from cnc_ptp.web.serve import serve
-
-NICENESS = 5
-"""Below the nodes of a machine."""
 
 
 def web(
@@ -41,8 +37,9 @@ def web(
     options = WebOptions(port, host, names, programs, certificate, key, users, machine)
     require_secured(options)
     taken = listen(host, port) if listening is None else socket.socket(fileno=listening)
-    os.nice(NICENESS)
-    if listening is not None:
+    if listening is None:
+        be_nice()
+    else:
         end_with(sys.stdin.fileno())
         if select.select([sys.stdin], [], [], 0.0)[0]:
             return 0  # the run has ended before the signal was ordered

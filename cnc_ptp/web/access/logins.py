@@ -12,7 +12,7 @@ IDLE_TIME = 30 * 60.0
 LONGEST_TIME = 12 * 3600.0
 """… and after which it ends in any case."""
 MOST = 1000
-"""Logins that are remembered, the newest ones."""
+"""Logins that are remembered: those with open pages, and those that were used last."""
 
 
 @dataclass(slots=True)
@@ -30,6 +30,13 @@ class Login:
     """Of its password or token: with another one, the login ends."""
     is_machine: bool = False
     """By a token that it sends with each request, it is no browser."""
+    pages: int = 0
+    """Open ones, also those that have not said hello yet."""
+
+    def is_of(self, other: Login) -> bool:
+        """The same browser; or the same machine, which has a login of its own in each request."""
+        is_machine = self.is_machine and other.is_machine
+        return self is other or (is_machine and (self.user, self.hash) == (other.user, other.hash))
 
 
 class Logins:
@@ -49,11 +56,16 @@ class Logins:
 
     def begin(self, user: str, role: str, hash: str = "") -> str:
         """A new login: the value of its cookie."""
+        while len(self._logins) >= MOST and (oldest := self._used_longest_ago()) is not None:
+            del self._logins[oldest]
         key = secrets.token_urlsafe(32)
         self._logins[key] = Login(user, role, self._now(), self._now(), hash=hash)
-        while len(self._logins) > MOST:
-            del self._logins[next(iter(self._logins))]
         return key
+
+    def _used_longest_ago(self) -> str | None:
+        """None where all have open pages."""
+        without_page = (key for key, login in self._logins.items() if not login.pages)
+        return min(without_page, key=lambda key: self._logins[key].used, default=None)
 
     def find(self, key: str) -> Login | None:
         """The login of a cookie, which counts as used; None for one that has ended or never was."""
@@ -67,8 +79,11 @@ class Logins:
         return login
 
     def has_ended(self, login: Login) -> bool:
+        """A machine proves itself with each request, and with `hello`: it ends with its token (Access.is_valid)."""
         if login.has_logged_out:
             return True
+        if login.is_machine:
+            return False
         return self._now() - login.used >= self._idle_time or self._now() - login.begin >= self._longest_time
 
     def of_machine(self, user: str, role: str, hash: str) -> Login:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -46,6 +46,10 @@ class Past:
     """The last ones of each node."""
 
 
+def nothing() -> None:
+    """Nothing is required."""
+
+
 class Face(ABC):
     """A machine as pages see it. All is called from the event loop, and returns at once, but for what is `async`."""
 
@@ -86,8 +90,13 @@ class Face(ABC):
         return None
 
     @abstractmethod
-    async def ask(self, unit: str, command: str, arguments: Mapping[str, Any], *, user: str) -> Reply:
-        """Gives a command. Raises the refusal of the unit, and CncError 22001, 22002, 26111, 26136, 26171, 26261."""
+    async def ask(
+        self, unit: str, command: str, arguments: Mapping[str, Any], *, user: str, require: Callable[[], None] = nothing
+    ) -> Reply:
+        """Gives a command. `require` is called when it is its turn, and raises why it is not sent then.
+
+        Raises the refusal of the unit, and CncError 22001, 22002, 26111, 26136, 26171, 26218, 26261.
+        """
 
     async def snapshot(self, file: str, seconds: float, until: float) -> int:
         """The recorder writes seconds up to a time of the machine into a file; the first cycle that it has.
@@ -101,7 +110,10 @@ class Face(ABC):
 
     @abstractmethod
     def jog(self, axis: str, velocity: float, *, user: str) -> None:
-        """One message of a jog (mm/s, deg/s; 0 ends it); the axis stops 0.2 s after the last one."""
+        """One message of a jog (mm/s, deg/s; 0 ends it); the axis stops 0.2 s after the last one.
+
+        Raises CncError 26218 where the machine file closes the axis to pages, services or topics.
+        """
 
     def loads(self) -> Mapping[str, Load]:
         """Channel -> the program that it has, of a recording; a machine that runs tells it by its records."""

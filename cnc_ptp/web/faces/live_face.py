@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import asyncio
-from collections import deque
+from collections import defaultdict, deque
 from collections.abc import Mapping
 from concurrent.futures import Future
 from functools import partial
+from itertools import count
 from math import inf
 from typing import Any
 
@@ -51,6 +52,24 @@ FREQUENT: Mapping[str, tuple[str, ...]] = {
 """Commands whose services are looked for when the face begins: their first call is as quick as the others."""
 
 
+class PageJogs:
+    """Messages of jogs, counted from 1 for each axis and client: the PLC compares them so (JogTopics), and takes the 1
+    of a server that has begun again."""
+
+    def __init__(self) -> None:
+        self._publishers: dict[str, Publisher[msg.Jog]] = {}
+        self._numbers: defaultdict[tuple[str, str], count[int]] = defaultdict(partial(count, 1))
+
+    def add(self, axis: str, publisher: Publisher[msg.Jog]) -> None:
+        self._publishers[axis] = publisher
+
+    def send(self, axis: str, velocity: float, client: str) -> None:
+        """mm/s, deg/s."""
+        message = msg.Jog(sequence=next(self._numbers[axis, client]), valid=True, velocity=velocity)
+        message.header.frame_id = client
+        self._publishers[axis].publish(message)
+
+
 class WebLink(GraphLink):
     """As of a client, but commands wait beside each other, and jogs are passed on message by message."""
 
@@ -64,8 +83,7 @@ class WebLink(GraphLink):
         self.requests: deque[HandshakeRequest] = deque()
         """Of channels, also those from before this process."""
         self._calls = CallsInFlight()
-        self._jog_publishers: dict[str, Publisher[msg.Jog]] = {}
-        self._jog_number = 0
+        self._page_jogs = PageJogs()
         super().__init__(domain=domain, namespace=namespace)
 
     def _subscribe(self, client: MachineClient) -> None:
@@ -81,7 +99,7 @@ class WebLink(GraphLink):
                 client.create_subscription(msg.ChannelOffsets, offsets_topic(unit), take_offsets, EVENTS)
                 client.create_subscription(msg.HandshakeRequest, handshake_topic(unit), self._take_request, EVENTS)
             if kind == "axis":
-                self._jog_publishers[unit] = client.create_publisher(msg.Jog, jog_topic(unit), PLC_INPUT)
+                self._page_jogs.add(unit, client.create_publisher(msg.Jog, jog_topic(unit), PLC_INPUT))
             for command in FREQUENT[kind]:
                 if command in services_of(kind):
                     self._calls.prepare(client, unit, command)
@@ -134,10 +152,7 @@ class WebLink(GraphLink):
 
     def jog(self, axis: str, velocity: float, client: str) -> None:
         """One message, at once."""
-        self._jog_number += 1
-        message = msg.Jog(sequence=self._jog_number, valid=True, velocity=velocity)
-        message.header.frame_id = client
-        self._jog_publishers[axis].publish(message)
+        self._page_jogs.send(axis, velocity, client)
 
     def publish_event(self, event: Event) -> None:
         """For recordings and other clients; its stamp is that of its cycle there.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from abc import abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Mapping
 from math import inf
 from types import SimpleNamespace
 from typing import Any
@@ -19,16 +19,19 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.nodes.bridge.jog_topics import JogTopics
 from cnc_ptp.parameters import ParameterSet
 from cnc_ptp.parameters.check.runtime_change import changed
-from cnc_ptp.parameters.view.authority import OF_PAGES, closed_units
+from cnc_ptp.parameters.view.authority import OF_PAGES, OF_SERVICES, OF_TOPICS, closed_units
 from cnc_ptp.protocol.authority import closed_to, require_axes_open
 from cnc_ptp.protocol.blocks import ChannelBlock, Command, CommandRecord, Event, Severity
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.web.access.rights import is_stop
 from cnc_ptp.web.faces.description import describe_commands, describe_units
-from cnc_ptp.web.faces.face import Face, News, State
+from cnc_ptp.web.faces.face import Face, News, State, nothing
 from cnc_ptp.web.faces.scope import signals_of
 from cnc_ptp.web.faces.unit_fields import unit_states
 from cnc_ptp.web.numbers import STOPPED
+
+JOG_SOURCES = (OF_PAGES, OF_SERVICES, OF_TOPICS)
+"""A jog of a page leaves on a topic; it is a command of pages, which are clients, all the same."""
 
 
 class MachineFace(Face):
@@ -103,7 +106,9 @@ class MachineFace(Face):
             return
         self._units = describe_units(self.kinds, self.sets, self.cycle_time)
 
-    async def ask(self, unit: str, command: str, arguments: Mapping[str, Any], *, user: str) -> Reply:
+    async def ask(
+        self, unit: str, command: str, arguments: Mapping[str, Any], *, user: str, require: Callable[[], None] = nothing
+    ) -> Reply:
         if unit not in self.kinds:
             raise unknown_unit(unit, self.kinds)
         given = self._machine[unit]._prepared(command, dict(arguments))
@@ -113,7 +118,7 @@ class MachineFace(Face):
             self.note(round(self.time / self.cycle_time), who_text(user, self.kinds[unit], unit, command, error.number))
             raise
         try:
-            reply = await self._in_turn(unit, command, given, user)
+            reply = await self._in_turn(unit, command, given, user, require)
         except CncError as error:
             end = f"no answer, P-ERR-{error.number}"
             self.note(round(self.time / self.cycle_time), f"{user}: {self.kinds[unit]} {unit}: {command}, {end}")
@@ -124,23 +129,34 @@ class MachineFace(Face):
         return reply
 
     def jog(self, axis: str, velocity: float, *, user: str) -> None:
-        self.require_open(axis, "jog", {"velocity": velocity})
+        self.require_open(axis, "jog", {"velocity": velocity}, JOG_SOURCES)
         self._send_jog(axis, velocity, user)
 
     @abstractmethod
     def _send_jog(self, axis: str, velocity: float, user: str) -> None:
         """One message of a jog that is open to pages."""
 
-    def require_open(self, unit: str, command: str, arguments: Mapping[str, Any]) -> None:
-        """Raises CncError 26218 where the machine file closes the unit, or an axis of a trajectory, to pages."""
+    def require_open(
+        self, unit: str, command: str, arguments: Mapping[str, Any], sources: Collection[str] = (OF_PAGES,)
+    ) -> None:
+        """Raises CncError 26218 where the machine file closes the unit to one of the sources.
+
+        Also where it closes an axis of a trajectory to pages.
+        """
         closed = self._closed.get(unit, ())
-        error = closed_to(self.kinds[unit], unit, command, arguments, source=OF_PAGES, closed=closed)
-        if error is not None:
-            raise error
+        for source in sources:
+            error = closed_to(self.kinds[unit], unit, command, arguments, source=source, closed=closed)
+            if error is not None:
+                raise error
         require_axes_open(Command(unit, command, dict(arguments)), self._closed, OF_PAGES)
 
-    async def _in_turn(self, unit: str, command: str, arguments: Mapping[str, Any], user: str) -> Reply:
-        """Commands of a unit one after the other. A stop waits for none; those that wait then are not sent."""
+    async def _in_turn(
+        self, unit: str, command: str, arguments: Mapping[str, Any], user: str, require: Callable[[], None]
+    ) -> Reply:
+        """Commands of a unit one after the other. A stop waits for none; those that wait then are not sent.
+
+        Nor are those of a page that may command no longer when it is their turn.
+        """
         kind = self.kinds[unit]
         if is_stop(kind, command, arguments):
             for stopped in stopped_by(kind, unit, command, self.kinds):
@@ -150,6 +166,7 @@ class MachineFace(Face):
         async with self._turns[unit]:
             if self._stops[unit] != stops:
                 raise CncError(STOPPED, f"{kind} {unit}: {command}: a stop came before it", "it was not sent")
+            require()
             return await self._answer_to(unit, command, arguments, user)
 
     def publish(self, event: Event) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from bisect import bisect_right
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from math import inf
 from operator import attrgetter
 from typing import Any
@@ -13,7 +13,7 @@ from cnc_ptp.client.link import Reply
 from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import CycleBlock, Event
 from cnc_ptp.web.faces.description import describe_commands
-from cnc_ptp.web.faces.face import Face, News, Past, State
+from cnc_ptp.web.faces.face import Face, News, Past, State, nothing
 from cnc_ptp.web.faces.program_watch import Load
 from cnc_ptp.web.faces.recorded_file import WINDOW, NodeReport, RecordedFile, Window
 from cnc_ptp.web.faces.scope import signals_of
@@ -197,7 +197,9 @@ class RecordedFace(Face):
             for unit, found in blocks.items():
                 yield from ((unit, block) for block in found if first <= block.first_cycle < behind)
 
-    async def ask(self, unit: str, command: str, arguments: Mapping[str, Any], *, user: str) -> Reply:
+    async def ask(
+        self, unit: str, command: str, arguments: Mapping[str, Any], *, user: str, require: Callable[[], None] = nothing
+    ) -> Reply:
         raise is_recording(f"{unit}: {command}")
 
     async def snapshot(self, file: str, seconds: float, until: float) -> int:

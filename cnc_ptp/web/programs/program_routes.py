@@ -84,7 +84,7 @@ class ProgramRoutes:
     def _require_command(self, login: Login, name: str) -> None:
         """A program may be replaced while it is loaded: by whoever commands. Raises CncError 26236."""
         holder = self._hub.right.holder
-        if not any(session is holder and session.login is login for session in self._hub.sessions):
+        if not any(session is holder and session.login.is_of(login) for session in self._hub.sessions):
             reason = f"upload: '{name}' is replaced only by a page that holds the command"
             raise CncError(NO_COMMAND_RIGHT, reason, NOT_WRITTEN)
 

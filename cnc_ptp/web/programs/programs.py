@@ -106,5 +106,6 @@ def is_name(name: str) -> bool:
 def require_name(name: str) -> None:
     """Raises CncError 26240."""
     if not is_name(name):
-        reason = f"'{name[:80]}' is no name of a program: letters, digits, _ . + - and {', '.join(SUFFIXES)}"
+        form = "at most 80 ASCII letters, digits, blanks, _ . + -, at first a letter, digit or _, at last"
+        reason = f"'{name[:80]}' is no name of a program: {form} {', '.join(SUFFIXES)}"
         raise CncError(BAD_PROGRAM_NAME, reason, "nothing was read or written")
