@@ -86,7 +86,11 @@ def difference(
             reason = f"the recordings have no cycle in common{asked_part(begin, end)}: {times_of}"
             raise CncError(NOT_COMPARABLE, reason, "nothing was compared")
         start, last = min(span[0] for span in spans.values()), max(span[1] for span in spans.values())
-        notes = [*notes_of_both(pair, shown, cycle_time, end), *notes_of_units(machine, spans, start, last), *unfinished]
+        notes = [
+            *notes_of_both(pair, shown, cycle_time, end),
+            *notes_of_units(machine, spans, start, last),
+            *unfinished,
+        ]
         return RunDifference(rows, times, start, last, cycle_time, notes)
 
 
@@ -172,9 +176,7 @@ def in_program(file: OpenRecording, channel: str, begin: float, end: float | Non
     return np.isin(file.columns(f"/{channel}/state", STATE, start=begin, end=end)[STATE], IN_PROGRAM)
 
 
-def notes_of_programs(
-    channel: str, programs: Iterable[npt.NDArray[np.bool_]], names: Iterable[str]
-) -> Iterator[str]:
+def notes_of_programs(channel: str, programs: Iterable[npt.NDArray[np.bool_]], names: Iterable[str]) -> Iterator[str]:
     """The runs, by name, in whose last cycle a program is in progress."""
     running = [name for name, cycles in zip(names, programs, strict=True) if len(cycles) and cycles[-1]]
     if running:
