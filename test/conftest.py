@@ -63,7 +63,9 @@ def motion_of_module(recorded_motion: Any, request: pytest.FixtureRequest) -> It
 
 
 @pytest.fixture(autouse=True)
-def motion_of_recordings(motion_of_module: None, recorded_motion: Any, request: pytest.FixtureRequest) -> Iterator[None]:
+def motion_of_recordings(
+    motion_of_module: None, recorded_motion: Any, request: pytest.FixtureRequest
+) -> Iterator[None]:
     """No recording of the test has a step, exceeds a limit or moves without power (recording/motion_check).
 
     `motion_unchecked("why")` marks a test that bends recordings on purpose.
