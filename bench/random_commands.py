@@ -325,7 +325,7 @@ def inputs_of(
 ) -> MotionInputs:
     """A run as the checker reads it from a recording; `blocks` by unit."""
     commands = [(r.cycle, r.target, r.command, r.arguments_json, r.accepted) for r in records]
-    inputs = MotionInputs(machine, machine.cycle_time_us * 1e-6, orders=orders_by_unit(commands))
+    inputs = MotionInputs(machine, machine.cycle_time_us * 1e-6, orders=orders_by_unit(machine, commands))
     for name in machine.axes:
         inputs.axes[name] = columns_of(blocks[name], AXIS_FIELDS)
     for name in machine.spindles:

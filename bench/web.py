@@ -24,18 +24,14 @@ from statistics import median
 from typing import Any
 
 import psutil
-from mcap.reader import make_reader
-from rclpy.serialization import deserialize_message
 
 from bench.figures import Effort, Figure, ShowProgress
 from bench.graph import missing_samples
 from bench.graph_run import process_seconds
 from bench.jobs import MACHINE, long_program
+from bench.lateness import lateness_p99, told
 from bench.plc import p99
 from bench.web_jogs import KEEP_PRESSES, Ends, Observer, Proxy, collect, killed, own_browser, released, stalled
-from cnc_ptp.msg import LatenessHistogram
-from cnc_ptp.nodes.topics import LATENESS
-from cnc_ptp.nodes.unit.lateness import Lateness
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "test" / "web_browser"))
 
@@ -170,43 +166,24 @@ def mill(run: WebRun, *words: str) -> Iterator[tuple[int, psutil.Process]]:
     """The graph of the mill: port of its pages, process. What it has lost counts for `run`."""
     port = free_port()
     with tempfile.TemporaryDirectory() as folder:
-        record, told = str(Path(folder) / "run.mcap"), Path(folder) / "told"
+        record, output_file = str(Path(folder) / "run.mcap"), Path(folder) / "told"
         command = [sys.executable, "-m", "cnc_ptp", "run", MACHINE, "--stay", "--web", str(port), "--record", record]
-        with told.open("w") as output:
+        with output_file.open("w") as output:
             graph = subprocess.Popen([*command, *words], stdout=output, stderr=subprocess.STDOUT, cwd=folder)
         try:
-            wait_for_pages(graph, told)
+            wait_for_pages(graph, output_file)
             os.nice(NICENESS)
             yield port, psutil.Process(graph.pid)
         except Exception as error:
-            raise RuntimeError(f"{error}; the graph has said: {told.read_text()}") from error
+            raise RuntimeError(f"{error}; the graph has said: {output_file.read_text()}") from error
         finally:
             graph.terminate()
             graph.wait(LONGEST_START)
-        found = re.search(r"lost (\d+), computed twice", told.read_text())
+        found = re.search(r"lost (\d+), computed twice", output_file.read_text())
         run.blocks_lost += int(found[1]) if found else nan
         run.missing += missing_samples(record)
         if run.looked:
-            run.lateness_p99, run.looked = lateness_p99(record, *run.looked), None
-
-
-def lateness_p99(record: str, begin: int, end: int) -> float:
-    """Of the latest node from `begin` to `end` (ns of the wall clock), in ms. Nodes tell what was since their start."""
-    first: dict[str, LatenessHistogram] = {}
-    last: dict[str, LatenessHistogram] = {}
-    with Path(record).open("rb") as file:
-        for _, _, message in make_reader(file).iter_messages(topics=[f"/{LATENESS}"], end_time=end):
-            told = deserialize_message(message.data, LatenessHistogram)
-            (first if message.log_time <= begin else last)[told.source] = told
-    return max(lateness_since(first[source], last[source]).percentile_us(99.0) for source in last) / 1000.0
-
-
-def lateness_since(first: LatenessHistogram, last: LatenessHistogram) -> Lateness:
-    """What `last` has more than `first`."""
-    late = Lateness()
-    late.merge(last)
-    late.counts.subtract(dict(zip(first.step, first.blocks, strict=True)))
-    return late
+            run.lateness_p99, run.looked = lateness_p99(told(record), *run.looked), None
 
 
 def address_of(port: int) -> str:
@@ -219,10 +196,10 @@ def free_port() -> int:
         return int(found.getsockname()[1])
 
 
-def wait_for_pages(graph: subprocess.Popen[bytes], told: Path) -> None:
+def wait_for_pages(graph: subprocess.Popen[bytes], output_file: Path) -> None:
     """Its server has told its address."""
     deadline = time.monotonic() + LONGEST_START
-    while "pages: " not in told.read_text():
+    while "pages: " not in output_file.read_text():
         if graph.poll() is not None or time.monotonic() > deadline:
             raise RuntimeError("no pages")
         time.sleep(0.1)

@@ -51,10 +51,16 @@ def main(parts: Sequence[str], hours: float | None, minutes: float, keep: str | 
     seconds = 60.0 * (hours * 60.0 if hours else minutes)
     campaign = Campaign(folder, options)
     good = [getattr(campaign, part)(seconds * SHARES.get(part, 0.0) / timed) for part in chosen]
-    date = time.strftime("%Y-%m-%d", time.gmtime())
-    machine = f"{os.cpu_count()} processors, load {os.getloadavg()[0]:.1f}, Python {platform.python_version()}"
-    campaign.say(f"{date}, seed {options['seed']}, {machine}; recordings of runs with problems: {folder}")
+    now = where_and_when()
+    told = f"{now['date']}, seed {options['seed']}, {now['machine']}"
+    campaign.say(f"{told}; recordings of runs with problems: {folder}")
     sys.exit(not all(good))
+
+
+def where_and_when() -> dict[str, str]:
+    """Of a row."""
+    machine = f"{os.cpu_count()} processors, load {os.getloadavg()[0]:.1f}, Python {platform.python_version()}"
+    return {"date": time.strftime("%Y-%m-%d", time.gmtime()), "machine": machine}
 
 
 class Campaign:
@@ -89,10 +95,11 @@ class Campaign:
         good = True
         soak, sets_clock = self._options["soak"], self._options["set_clock"]
         for condition in conditions(self._folder, minutes=soak, sets_clock=sets_clock):
-            figures = ", ".join(f"{name} {value:g}" for name, value in condition.figures.items())
-            self.say(f"{condition.name}: {figures}{''.join(f'; {each}' for each in condition.problems)}")
+            told = [", ".join(f"{name} {value:g}" for name, value in condition.figures.items()), *condition.problems]
+            told += [f"not tried, {condition.untried}"] if condition.untried else []
+            self.say(f"{condition.name}: {'; '.join(filter(None, told))}")
             self._add(condition.as_json())
-            good = good and not condition.problems
+            good = good and condition.good is not False
         return good
 
     def commands(self, seconds: float) -> bool:
@@ -125,10 +132,10 @@ class Campaign:
         return good
 
     def _add(self, line: dict[str, Any]) -> None:
-        """To the file of the rows."""
+        """To the file of the rows, with date and machine."""
         if self._options["json_file"] is not None:
             with Path(self._options["json_file"]).open("a", encoding="utf-8") as stream:
-                stream.write(json.dumps(line) + "\n")
+                stream.write(json.dumps(line | where_and_when()) + "\n")
 
 
 if __name__ == "__main__":

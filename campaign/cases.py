@@ -30,7 +30,9 @@ GANTRY = f"""
 - {{at: 0, to: y, do: couple_gantry, master: x, difference_limit: 5}}
 - {{at: 0.05, to: x, do: move_absolute, target: 12000, velocity: 1000, {RAMPS}}}
 """
-THREAD = "G18 G90 M03 S400\nG00 X36 Z300\nG33 Z20 K1.5\nM30\n"
+THREAD_END = 20.0
+"""Position of z, which it comes to from above, mm."""
+THREAD = f"G18 G90 M03 S400\nG00 X36 Z300\nG33 Z{THREAD_END:g} K1.5\nM30\n"
 TAPPING = "G63 Z-100 F500 S400\nM30\n"
 
 

@@ -13,27 +13,35 @@ from campaign.load import LoadRow
 
 
 def conditions(folder: Path, *, minutes: float, sets_clock: bool = False) -> Iterator[LoadRow]:
-    """`minutes` of the soak, 0: none. Raises PermissionError for the wall clock."""
+    """`minutes` of the soak, 0: none."""
+    for name, condition in named(folder, minutes=minutes, sets_clock=sets_clock):
+        yield attempted(name, condition)
+
+
+def named(folder: Path, *, minutes: float, sets_clock: bool) -> Iterator[tuple[str, Callable[[], LoadRow]]]:
+    """What is tried, with names for what cannot be."""
     domain = free_domain(os.getpid())
-    yield load.busy_processors(folder, domain)
-    yield load.memory_pressure(folder, domain)
-    yield load.suspended(folder, domain)
+    yield "all processors busy", partial(load.busy_processors, folder, domain)
+    yield "memory pressure", partial(load.memory_pressure, folder, domain)
+    yield "whole graph suspended", partial(load.suspended, folder, domain)
     if sets_clock:
-        yield load.wall_clock_set(folder, domain)
-    yield with_disk("disk full", partial(disks.full_disk, folder, domain))
-    yield with_disk("slow disk", partial(disks.slow_disk, folder, domain))
-    yield load.company("subscribers", load.SUBSCRIBERS, folder, domain)
-    yield load.company("foreign nodes", load.FOREIGN_NODES, folder, domain)
-    yield load.company("late", 1, folder, domain)
-    yield load.floods(folder, domain)
-    yield load.two_machines(folder, domain)
+        yield "wall clock", partial(load.wall_clock_set, folder, domain)
+    yield "disk full", partial(disks.full_disk, folder, domain)
+    yield "slow disk", partial(disks.slow_disk, folder, domain)
+    yield "subscribers", partial(load.company, "subscribers", load.SUBSCRIBERS, folder, domain)
+    yield "foreign nodes", partial(load.company, "foreign nodes", load.FOREIGN_NODES, folder, domain)
+    yield "late joiner", partial(load.company, "late", 1, folder, domain)
+    yield "floods", partial(load.floods, folder, domain)
+    yield "two machines", partial(load.two_machines, folder, domain)
     if minutes:
-        yield load.soak(minutes, folder, domain)
+        yield "soak", partial(load.soak, minutes, folder, domain)
 
 
-def with_disk(name: str, condition: Callable[[], LoadRow]) -> LoadRow:
-    """A row that says why it was not tried where no file system can be mounted."""
+def attempted(name: str, condition: Callable[[], LoadRow]) -> LoadRow:
+    """Its row; one that says why where no file system can be mounted, and where it ended with an error."""
     try:
         return condition()
     except disks.NoDiskError as error:
-        return LoadRow(f"{name}: not tried, {error}")
+        return LoadRow(name, untried=str(error))
+    except Exception as error:  # whatever it is, the conditions behind it are tried
+        return LoadRow(name, problems=[f"not looked at to the end: {error!r}"])

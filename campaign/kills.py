@@ -17,12 +17,12 @@ import numpy as np
 import psutil
 
 from campaign import motion
-from campaign.cases import CASES, Case
+from campaign.cases import CASES, THREAD_END, Case
 from campaign.graph import SERVER, SUPERVISOR, Graph, free_domain
 from campaign.witness import Witness
 from cnc_ptp.errors import CncError
 from cnc_ptp.nodes.forked import SERVER_ENDED
-from cnc_ptp.parameters import read_machine
+from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.recording.node_figures import LATENESS_MAX
 from cnc_ptp.recording.reader import Recorded, read_recording
 
@@ -39,6 +39,10 @@ RETRACTED = 0.01
 """mm; the retract begins within a block of its event."""
 HELD_SHARE, TERM_SHARE = 0.3, 0.2
 INTERRUPTED = "P-ERR-26106"
+ENDLESS = "does not end"
+RETRACTS = re.compile(r"axis (\w+) retracts by ([0-9.]+) mm while the path follows")
+NEAR_END = 1.0
+"""mm of a thread in which it may have ended before somebody notices a fault."""
 
 
 @dataclass
@@ -60,7 +64,7 @@ class Row:
 
     fault: Fault
     outcome: str = ""
-    """stopped, survived; or over: the run had ended before."""
+    """stopped, survived, ENDLESS; over: the run had ended before; empty: it did not begin."""
     problems: list[str] = field(default_factory=list)
     seconds: float = 0.0
     """From the fault to the end of the run."""
@@ -97,14 +101,26 @@ def run(fault: Fault, folder: Path, *, domain: int) -> Row:
     """Starts the case of the fault, lets it happen, and checks everything."""
     case = next(each for each in CASES if each.name == fault.case)
     row = Row(fault, load=os.getloadavg()[0])
-    recording = folder / "run.mcap"
+    try:
+        run_into(row, case, folder, domain)
+    except Exception as error:  # whatever it is, the faults behind it are tried
+        row.problems.append(f"not looked at to the end: {error!r}")
+    return row
+
+
+def run_into(row: Row, case: Case, folder: Path, domain: int) -> None:
+    """What `run` does."""
+    fault, recording = row.fault, folder / "run.mcap"
     machine = read_machine(str(case.machine))
     graph, witness = Graph(case.words(folder), recording, domain=domain), None
     with ExitStack() as stack:
         stack.callback(graph.end)
         if not graph.wait_for_start():
             row.problems.append(f"the run did not start: {graph.output[-300:]}")
-            return row
+            return
+        if fault.node not in graph.processes:
+            row.problems.append(f"there is no process of {fault.node}, but of {', '.join(graph.processes)}")
+            return
         begin = time.monotonic()
         if fault.node == "recorder":
             witness = stack.enter_context(Witness(case.machine, folder / "seen.npz", domain))
@@ -112,7 +128,7 @@ def run(fault: Fault, folder: Path, *, domain: int) -> Row:
         time.sleep(max(0.0, begin + fault.moment - time.monotonic()))
         if not graph.running:
             row.outcome = "over"
-            return row
+            return
         happened = time.monotonic()
         strike(graph.processes[fault.node], fault)
         row.outcome = await_end(graph, fault)
@@ -121,7 +137,6 @@ def run(fault: Fault, folder: Path, *, domain: int) -> Row:
         whole = check_recording(row, case, recording, happened - begin, graph.lateness)
         if witness is not None and not (whole and row.outcome == "survived"):
             row.problems += (f"seen: {text}" for text in motion.seen_problems(witness.seen(), machine))
-    return row
 
 
 def lateness_before(fault: Fault, largest: float) -> float:
@@ -152,19 +167,19 @@ def await_end(graph: Graph, fault: Fault) -> str:
     if fault.signal == HOLD and not graph.wait(SURVIVED_AFTER):
         graph.interrupt()
         if not graph.wait(END_PATIENCE):
-            return "does not end"
+            return ENDLESS
         finished = graph.process.returncode == 0 and INTERRUPTED not in graph.output
         finished = finished or graph.process.returncode == -signal.SIGINT
         return "over" if finished and graph.summed_up else "survived"
     if not graph.wait(END_PATIENCE):
-        return "does not end"
+        return ENDLESS
     whole = fault.signal == HOLD or (fault.signal == TERM and fault.node == "recorder")
     return "over" if whole and graph.process.returncode == 0 and graph.summed_up else "stopped"
 
 
 def left_behind(graph: Graph, fault: Fault, outcome: str) -> Iterator[str]:
     """Orphans, claims, shared memory, and an end that does not say who is to blame."""
-    if outcome == "does not end":
+    if outcome == ENDLESS:
         yield f"the run had not ended after {END_PATIENCE:g} s"
         return
     status = graph.process.returncode
@@ -178,14 +193,18 @@ def left_behind(graph: Graph, fault: Fault, outcome: str) -> Iterator[str]:
     output = graph.output
     if "Traceback" in output:
         yield f"a traceback: {output[output.index('Traceback') :][:400]}"
-    if outcome == "stopped" and not any(name in output for name in names(fault, graph)):
+    told = names(fault, graph)
+    if outcome == "stopped" and told and not any(name in output for name in told):
         yield f"nobody names {fault.node}: {output[-400:]}"
 
 
 def names(fault: Fault, graph: Graph) -> list[str]:
-    """Texts of which one must be told, if the run has stopped."""
+    """Texts of which one must be told, if the run has stopped.
+
+    None of a killed supervisor: nobody is left to tell it but the recording, which must have the stops of the drives.
+    """
     if fault.node == SUPERVISOR:
-        return [INTERRUPTED] if fault.signal == TERM else [""]
+        return {TERM: [INTERRUPTED], HOLD: ["P-ERR-"], KILL: []}[fault.signal]
     if fault.node == SERVER:
         return [SERVER_ENDED] if fault.signal != HOLD else ["P-ERR-"]
     died = f"P-ERR-26104 node '{fault.node}' (process {graph.processes[fault.node].pid})"
@@ -222,13 +241,14 @@ def check_recording(row: Row, case: Case, recording: Path, moment: float, latene
     row.own_stops = {stop.unit: len(stop.actual_position) for stop in recorded.drive_stops}
     check_links(row, case, recorded)
     row.problems += not_retracted(recorded)
+    row.problems += silent_retract(fault, recorded, machine)
     return recorded.complete
 
 
 def not_retracted(recorded: Recorded) -> Iterator[str]:
     """Threads that are broken off with a retract whose axis has not gone that way, though its process lives."""
     for event in recorded.events:
-        told = re.search(r"axis (\w+) retracts by ([0-9.]+) mm while the path follows", event.text)
+        told = RETRACTS.search(event.text)
         rows = recorded.states.get(f"/{told[1].lower()}/state") if told else None
         if told is None or rows is None or any(stop.unit == told[1].lower() for stop in recorded.drive_stops):
             continue
@@ -236,6 +256,24 @@ def not_retracted(recorded: Recorded) -> Iterator[str]:
         way = abs(positions[-1] - positions[np.searchsorted(rows["cycle"], event.cycle)])
         if abs(way - float(told[2])) > RETRACTED:
             yield f"{told[1]} has retracted by {way:.3f} mm instead of {told[2]} mm"
+
+
+def silent_retract(fault: Fault, recorded: Recorded, machine: MachineParameters) -> Iterator[str]:
+    """A thread was cut when its spindle or its axis was killed, and nobody says that the tool leaves the groove.
+
+    Channel, PLC and the axis of the retract live then. What goes before the cut, and its end, does not count.
+    """
+    if fault.case != "thread" or fault.signal != KILL or fault.node not in ("s", "z"):
+        return
+    states, z = (recorded.states.get(f"/{unit}/state") for unit in (fault.node, "z"))
+    threads = recorded.threads.get("channel")
+    if states is None or z is None or threads is None or any(RETRACTS.search(event.text) for event in recorded.events):
+        return
+    lost = int(states["cycle"][-1]) + 1
+    before = threads[(threads["cycle"] < lost) & (threads["cycle"] + 2 * machine.block_cycles >= lost)]
+    cuts = len(before) and not np.isnan(before["set_phase_error_deg"]).any()
+    if cuts and z["set_position"][-1] > THREAD_END + NEAR_END:
+        yield f"nobody says that the tool leaves the thread that it cut in cycle {lost}"
 
 
 def check_links(row: Row, case: Case, recorded: Recorded) -> None:

@@ -11,13 +11,14 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, field
-from math import ceil
+from math import ceil, isnan
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import psutil
 
+from bench.lateness import lateness_p99, told
 from campaign import motion
 from campaign.cases import CASES, MILLING, Case
 from campaign.graph import Graph, free_domain
@@ -46,6 +47,8 @@ SAMPLING = 5.0
 """Seconds from one look at the processes to the next, in a soak of a minute or more."""
 GROWTH_MB = 1.0
 """What a process may grow by in a soak."""
+LATER, LATE_MS = 2.0, 10.0
+"""By what the lateness (p99) may grow from the first to the last quarter of a soak; below LATE_MS it does not count."""
 
 
 @dataclass
@@ -55,9 +58,15 @@ class LoadRow:
     name: str
     figures: dict[str, float] = field(default_factory=dict)
     problems: list[str] = field(default_factory=list)
+    untried: str = ""
+    """Why it was not tried, if it was not: neither good nor bad then."""
+
+    @property
+    def good(self) -> bool | None:
+        return None if self.untried else not self.problems
 
     def as_json(self) -> dict[str, Any]:
-        return asdict(self) | {"good": not self.problems}
+        return asdict(self) | {"good": self.good}
 
 
 @contextmanager
@@ -314,6 +323,7 @@ def soak(minutes: float, folder: Path, domain: int) -> LoadRow:
     finally:
         graph.end()
     grown(row, samples)
+    later(row, graph.recording)
     return row
 
 
@@ -323,7 +333,10 @@ def figures_of(process: psutil.Process) -> tuple[float, int, int]:
 
 
 def grown(row: LoadRow, samples: list[dict[str, tuple[float, int, int]]]) -> None:
-    """The growth from the end of the first five minutes, or fifth, on; lost blocks."""
+    """The growth from the end of the first five minutes, or fifth, on."""
+    if not samples:
+        row.problems.append("no process was looked at")
+        return
     settled = samples[min(int(len(samples) * SETTLED), int(SETTLING / SAMPLING)) :]
     for name in settled[0]:
         memory, handles, threads = (settled[-1][name][n] - settled[0][name][n] for n in range(3))
@@ -332,6 +345,21 @@ def grown(row: LoadRow, samples: list[dict[str, tuple[float, int, int]]]) -> Non
             row.problems.append(f"{name} has grown by {memory:.2f} MB")
         if handles > 0 or threads > 0:
             row.problems.append(f"{name} has {handles} more file handles, {threads} more threads")
+
+
+def later(row: LoadRow, recording: Path) -> None:
+    """The p99 of the latest node in the first and in the last quarter."""
+    messages = told(recording)
+    begin, end = (messages[place][0] if messages else 0 for place in (0, -1))
+    quarter = (end - begin) // 4
+    first = lateness_p99(messages, begin, begin + quarter)
+    last = lateness_p99(messages, end - quarter, end)
+    if isnan(first) or isnan(last):
+        row.problems.append("no node has told its lateness")
+        return
+    row.figures |= {"p99 of the first quarter [ms]": first, "p99 of the last quarter [ms]": last}
+    if last > max(LATER * first, LATE_MS):
+        row.problems.append(f"p99 of the lateness has grown from {first:g} to {last:g} ms")
 
 
 def largest_lateness(recorded: Recorded) -> float:

@@ -105,13 +105,14 @@ def seen_problems(seen: Recorded, machine: MachineParameters) -> Iterator[str]:
 
 
 def violations(recording: Path) -> list[str]:
-    """What the checker of all recordings finds (cnc_ptp verify --motion); it knows nothing of drives alone."""
+    """What the checker of all recordings finds (cnc_ptp verify --motion); it knows nothing of drives alone.
+
+    One that it refuses is a problem, but for one in which nothing has moved yet.
+    """
     try:
         return [str(violation) for violation in check_recording(recording).violations]
     except CncError as error:
-        if error.number != NO_SETPOINTS:
-            raise
-        return []
+        return [] if error.number == NO_SETPOINTS else [f"the motion cannot be checked: {error}"]
 
 
 def limits(machine: MachineParameters, unit: str) -> tuple[float, float]:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 
 from rich.table import Table
 
-from campaign.kills import HOLD, KILL, TERM, Row
+from campaign.kills import ENDLESS, HOLD, KILL, TERM, Row
 
 
 def table(rows: Sequence[Row]) -> Table:
@@ -29,11 +30,10 @@ def ratio(rows: Sequence[Row]) -> str:
 
 def summary(rows: Sequence[Row]) -> str:
     """What a document says of it."""
-    happened = [row for row in rows if row.outcome not in ("over", "")]
-    over = len(rows) - len(happened)
-    survived = sum(row.outcome == "survived" for row in happened)
-    bad = [problem for row in rows for problem in row.problems]
-    return (
-        f"{len(happened)} faults ({over} came after the end of their run): {len(happened) - survived} stops, "
-        f"{survived} runs that continued, {len(bad)} problems"
-    )
+    of = Counter(row.outcome for row in rows)
+    parts = [f"{of['stopped']} stops", f"{of['survived']} runs that continued"]
+    parts += [f"{of[ENDLESS]} runs that did not end"] if of[ENDLESS] else []
+    parts += [f"{of['']} runs that did not begin"] if of[""] else []
+    parts.append(f"{sum(len(row.problems) for row in rows)} problems")
+    happened = len(rows) - of["over"] - of[""]
+    return f"{happened} faults ({of['over']} came after the end of their run): {', '.join(parts)}"

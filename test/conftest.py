@@ -51,22 +51,36 @@ def recorded_motion(tmp_path_factory: pytest.TempPathFactory, pytestconfig: pyte
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(tmp_path_factory, "mktemp", mktemp)
         yield motion
+    found = motion.violations(motion.all_new_files())
     pytestconfig.stash[MOTION] = [motion.summary()]
+    assert not found, "\n".join(found)
+
+
+@pytest.fixture(autouse=True, scope="module")
+def motion_of_module(recorded_motion: Any, request: pytest.FixtureRequest) -> Iterator[None]:
+    """The same of recordings that come to their end with what a module has made."""
+    yield from checked(recorded_motion, request)
 
 
 @pytest.fixture(autouse=True)
-def motion_of_recordings(recorded_motion: Any, request: pytest.FixtureRequest) -> Iterator[None]:
+def motion_of_recordings(
+    motion_of_module: None, recorded_motion: Any, request: pytest.FixtureRequest
+) -> Iterator[None]:
     """No recording of the test has a step, exceeds a limit or moves without power (recording/motion_check).
 
     `motion_unchecked("why")` marks a test that bends recordings on purpose.
     """
+    yield from checked(recorded_motion, request)
+
+
+def checked(recorded_motion: Any, request: pytest.FixtureRequest) -> Iterator[None]:
     yield
-    if not recorded_motion.folders:
-        return
     files = recorded_motion.new_files()
     if request.node.get_closest_marker("motion_unchecked") is None:
         found = recorded_motion.violations(files)
         assert not found, "\n".join(found)
+    else:
+        recorded_motion.forget(getattr(request.node, "funcargs", {}).get("tmp_path"))
 
 
 def pytest_configure(config: pytest.Config) -> None:

@@ -26,6 +26,7 @@ from cnc_ptp.parameters import load_machine
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import Command
 from cnc_ptp.recording.long_recording import read_own
+from cnc_ptp.recording.motion_check.check import check_recording
 from cnc_ptp.recording.offline_run import OfflineRun
 from cnc_ptp.recording.opened import OpenRecording
 from cnc_ptp.recording.reader import iter_messages, read_recording
@@ -183,7 +184,19 @@ def replay_all(file: Path) -> None:
         replay(str(file), verify=True, publish=False, rate=1.0)
 
 
-READERS = {"read": read_all, "open": open_all, "recover": recover_all, "report": make_report, "replay": replay_all}
+def check_motion(file: Path) -> None:
+    """What is wrong with its motion, as a text."""
+    check_recording(file).text()
+
+
+READERS = {
+    "read": read_all,
+    "open": open_all,
+    "recover": recover_all,
+    "report": make_report,
+    "replay": replay_all,
+    "motion": check_motion,
+}
 
 
 def checkpoints(_folder: Path) -> Target:

@@ -12,7 +12,7 @@ import zlib
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -123,6 +123,7 @@ class McapIndex(RecordReader):
             return
         if int(offsets.max()) + HEAD_SIZE > len(data):
             raise self.corrupt(place.offset, "a message index leads behind the end of the chunk")
+        offsets = offsets.astype(np.int64)
         sizes = data[offsets[:, None] + np.arange(1, RECORD_PREFIX.size)].view("<u8")[:, 0] + RECORD_PREFIX.size
         if (sizes < HEAD_SIZE).any() or (sizes > len(data) - offsets.astype(np.uint64)).any():
             raise self.corrupt(place.offset, "a message of the chunk is longer than the chunk")
@@ -130,11 +131,11 @@ class McapIndex(RecordReader):
         for first, end in pairwise(bounds):
             yield MessageRun(channel, _rows(data, offsets[first:end], int(sizes[first])))
 
-    def _message_offsets(self, offset: int) -> npt.NDArray[np.int64]:
+    def _message_offsets(self, offset: int) -> npt.NDArray[Any]:
         body = self.record(offset).body
         if (len(body) - 6) % INDEX_ENTRY.itemsize:
             raise self.corrupt(offset, "the message index is no list of times and offsets")
-        offsets: npt.NDArray[np.int64] = np.frombuffer(body[6:], dtype=INDEX_ENTRY)["offset"].astype(np.int64)
+        offsets: npt.NDArray[Any] = np.frombuffer(body[6:], dtype=INDEX_ENTRY)["offset"]
         return offsets
 
     # the file

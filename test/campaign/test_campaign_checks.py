@@ -1,25 +1,29 @@
 """The checks of the campaign find what they are to find, in recordings that were made for it."""
 
 import json
+import subprocess
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
+from typing import ClassVar
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from lateness_support import write_lateness
 from recording_support import Blocks
 
 from bench.fuzzing.kinds import KINDS
 from campaign import __main__ as command
-from campaign import kills, load, motion, witness
+from campaign import disks, kills, load, motion, witness
 from campaign.cases import Link
-from campaign.conditions import with_disk
+from campaign.conditions import attempted, conditions
 from campaign.disks import NoDiskError
 from campaign.graph import Graph, size_of
 from campaign.kills import HOLD, KILL, TERM, Fault, Row
 from campaign.load import case_of
 from campaign.table import summary, table
+from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import Event, Severity
 from cnc_ptp.recording.node_figures import LATENESS_MAX, LOST_BLOCKS
@@ -293,6 +297,110 @@ def test_a_retract_that_did_not_take_place_is_found():
     assert list(kills.not_retracted(made)) == []
 
 
+def thread_recording(lost=300, begin=100, z_end=150.0):
+    """A thread is cut from cycle `begin` on; spindle and z have come to cycle `lost`."""
+    made = tapped()
+    for name in ("/s/state", "/z/state"):
+        made.states[name] = made.states[name][:lost]
+    made.states["/z/state"]["set_position"][-1] = z_end
+    phase = np.zeros(300, [("cycle", np.uint64), ("set_phase_error_deg", float)])
+    phase["cycle"] = np.arange(300)
+    phase["set_phase_error_deg"][:begin] = np.nan
+    made.threads = {"channel": phase}
+    return made
+
+
+@pytest.mark.parametrize(
+    ("node", "signal", "made", "silent"),
+    [
+        ("s", KILL, thread_recording(), True),
+        ("z", KILL, thread_recording(200), True),
+        ("z", KILL, thread_recording(115, begin=100), False),
+        ("z", KILL, thread_recording(z_end=20.5), False),
+        ("x", KILL, thread_recording(), False),
+        ("s", TERM, thread_recording(), False),
+    ],
+)
+def test_a_thread_that_was_cut_is_broken_off_by_a_retract(node, signal, made, silent):
+    fault = Fault("thread", node, signal, 0.0, 3.0)
+    cycle = len(made.states["/z/state"])
+    text = f"nobody says that the tool leaves the thread that it cut in cycle {cycle}"
+    assert list(kills.silent_retract(fault, made, MILL)) == ([text] if silent else [])
+    assert list(kills.silent_retract(replace(fault, case="tapping"), made, MILL)) == []
+    told = "no block of 's' came within the watchdog time; axis X retracts by 5 mm while the path follows spindle s"
+    made.events = [Event(300, "channel", Severity.ERROR, 26101, told)]
+    assert list(kills.silent_retract(fault, made, MILL)) == []
+
+
+class Blamed:
+    """A run that has stopped and has said this."""
+
+    processes: ClassVar[dict] = {"x": SimpleNamespace(pid=7)}
+    process = SimpleNamespace(returncode=1)
+
+    def __init__(self, output):
+        self.output = output
+
+    def orphans(self):
+        return []
+
+    leftovers = orphans
+
+
+@pytest.mark.parametrize(
+    ("node", "signal", "output", "named"),
+    [
+        ("supervisor", HOLD, "machine time 3 s", False),
+        ("supervisor", HOLD, "P-ERR-26101 x: silent", True),
+        ("supervisor", TERM, "machine time 3 s", False),
+        ("x", KILL, "P-ERR-26104 node 'y' (process 8)", False),
+        ("x", KILL, "P-ERR-26104 node 'x' (process 7)", True),
+    ],
+)
+def test_a_run_that_has_stopped_says_who_is_to_blame(node, signal, output, named):
+    found = list(kills.left_behind(Blamed(output), Fault("ptp", node, signal, 0.0, 1.0), "stopped"))
+    assert found == ([] if named else [f"nobody names {node}: {output}"])
+
+
+def test_a_killed_supervisor_names_nobody():
+    graph = Blamed("")
+    graph.process = SimpleNamespace(returncode=-9)
+    assert list(kills.left_behind(graph, Fault("ptp", "supervisor", KILL, 0.0, 1.0), "stopped")) == []
+
+
+class Begun:
+    """A run with processes of some names."""
+
+    running, output = True, "begun"
+
+    def __init__(self, *names, starts=True):
+        self.processes = dict.fromkeys(names)
+        self._starts = starts
+
+    def __call__(self, *_, **__):
+        return self
+
+    def wait_for_start(self):
+        return self._starts
+
+    def end(self):
+        pass
+
+
+@pytest.mark.parametrize(
+    ("graph", "problem"),
+    [
+        (Begun(starts=False), "the run did not start: begun"),
+        (Begun("supervisor", "y"), "there is no process of x, but of supervisor, y"),
+        (Begun("supervisor", "x"), "not looked at to the end: AttributeError(\"'NoneType' object has no attribute 'send_signal'\")"),
+    ],
+)  # fmt: skip
+def test_a_fault_that_cannot_be_looked_at_is_a_row(monkeypatch, tmp_path, graph, problem):
+    monkeypatch.setattr(kills, "Graph", graph)
+    found = kills.run(Fault("ptp", "x", KILL, 0.0, 0.01), tmp_path, domain=199)
+    assert (found.outcome, found.problems) == ("", [problem])
+
+
 def row(signal, outcome, *problems):
     return Row(Fault("ptp", "x", signal, 0.0, 1.0), outcome, [*problems], own_stops={"x": 20})
 
@@ -300,6 +408,11 @@ def row(signal, outcome, *problems):
 def test_the_table_counts_what_happened():
     made = [row(KILL, "stopped"), row(KILL, "stopped", "orphans: x"), row(HOLD, "survived"), row(TERM, "over")]
     assert summary(made) == ("3 faults (1 came after the end of their run): 2 stops, 1 runs that continued, 1 problems")
+    made_too = [row(KILL, "does not end", "the run had not ended"), row(KILL, "", "the run did not start")]
+    assert summary([*made, *made_too]) == (
+        "4 faults (1 came after the end of their run): 2 stops, 1 runs that continued, 1 runs that did not end, "
+        "1 runs that did not begin, 3 problems"
+    )
     cells = [list(column.cells) for column in table(made).columns]
     assert cells == [["ptp"], ["1 / 2"], ["0 / 0"], ["1 / 1"], ["3"], ["0.0"]]
     assert made[0].as_json()["good"] and not made[1].as_json()["good"]
@@ -409,25 +522,105 @@ def test_what_a_soak_may_grow_by():
     assert row.figures == {"x: MB more": 2.1, "y: MB more": 0.9, "z: MB more": 0.0}
 
 
-def test_a_disk_that_cannot_be_mounted_is_said(monkeypatch):
+def test_a_soak_without_a_sample_says_so():
+    row = load.LoadRow("soak")
+    load.grown(row, [])
+    assert row.problems == ["no process was looked at"]
+
+
+@pytest.mark.parametrize(
+    ("first", "last", "problems"),
+    [
+        (2.0, 9.0, []),
+        (6.0, 12.0, []),
+        (2.0, 15.0, ["p99 of the lateness has grown from 2.1 to 15.1 ms"]),
+        (80.0, 2.0, []),
+    ],
+)
+@pytest.mark.motion_unchecked("messages of one topic, of no machine")
+def test_the_lateness_of_a_soak_may_not_grow(tmp_path, first, last, problems):
+    """Nodes tell what was since their start: that of the last quarter is not hidden by the rest."""
+    late = [first] * 4 + [1.0] * 8 + [last] * 4
+    write_lateness(tmp_path / "run.mcap", [{"x": 1000.0 * each, "y": 500.0} for each in late])
+    row = load.LoadRow("soak")
+    load.later(row, tmp_path / "run.mcap")
+    assert row.problems == problems
+    assert row.figures == {
+        "p99 of the first quarter [ms]": pytest.approx(first + 0.1),
+        "p99 of the last quarter [ms]": pytest.approx(last + 0.1),
+    }
+
+
+@pytest.mark.motion_unchecked("messages of one topic, of no machine")
+def test_a_soak_in_which_nobody_tells_its_lateness(tmp_path):
+    write_lateness(tmp_path / "run.mcap", [])
+    row = load.LoadRow("soak")
+    load.later(row, tmp_path / "run.mcap")
+    assert (row.figures, row.problems) == ({}, ["no node has told its lateness"])
+
+
+def test_a_disk_that_cannot_be_mounted_is_neither_good_nor_bad():
     def none():
         raise NoDiskError("mount -t: only root can do that")
 
-    assert with_disk("slow disk", none).name == "slow disk: not tried, mount -t: only root can do that"
+    row = attempted("slow disk", none)
+    assert (row.name, row.good) == ("slow disk", None)
+    assert row.as_json()["untried"] == "mount -t: only root can do that"
+
+
+FAILURES = [
+    RuntimeError("the run did not start: …"),
+    subprocess.TimeoutExpired("python", 120),
+    CncError(26003, "recording run.mcap: corrupt", "nothing was read"),
+    PermissionError(1, "clock_settime"),
+]
+
+
+@pytest.mark.parametrize("error", FAILURES, ids=repr)
+def test_a_condition_that_fails_is_a_row_and_the_next_one_comes(monkeypatch, tmp_path, error):
+    def fail(*_):
+        raise error
+
+    for name in ("memory_pressure", "suspended", "wall_clock_set", "company", "floods", "two_machines", "soak"):
+        monkeypatch.setattr(load, name, fail)
+    for name in ("full_disk", "slow_disk"):
+        monkeypatch.setattr(disks, name, fail)
+    monkeypatch.setattr(load, "busy_processors", lambda *_: load.LoadRow("busy"))
+    first, *others = conditions(tmp_path, minutes=1.0, sets_clock=True)
+    assert first.good and len(others) == 11
+    assert all(each.problems == [f"not looked at to the end: {error!r}"] and each.good is False for each in others)
+
+
+def test_a_motion_that_cannot_be_checked_is_a_problem(monkeypatch, tmp_path):
+    def refuse(_path):
+        raise CncError(number, "recording run.mcap: refused", "no motion was checked")
+
+    monkeypatch.setattr(motion, "check_recording", refuse)
+    number = motion.NO_SETPOINTS
+    assert motion.violations(tmp_path) == []
+    number = 26264
+    text = "the motion cannot be checked: P-ERR-26264 recording run.mcap: refused; no motion was checked"
+    assert motion.violations(tmp_path) == [text]
 
 
 @pytest.mark.parametrize("good", [True, False])
 def test_all_parts_are_run_and_their_rows_written(good, monkeypatch, tmp_path):
     row = Row(Fault("program", "y", KILL, 0.0, 1.0), "stopped", problems=[] if good else ["x: still moves"])
     monkeypatch.setattr(kills, "campaign", lambda *_, **__: iter([row]))
-    monkeypatch.setattr(command, "conditions", lambda *_, **__: iter([load.LoadRow("busy", {"cycles": 1.0})]))
+    tried = [load.LoadRow("busy", {"cycles": 1.0}), load.LoadRow("slow disk", untried="no root")]
+    monkeypatch.setattr(command, "conditions", lambda *_, **__: iter(tried))
     kinds = {"users": KINDS["users"]}
     monkeypatch.setattr(command, "KINDS", kinds)
     file = tmp_path / "rows.jsonl"
     result = CliRunner().invoke(command.main, ["--minutes", "0.001", "--json", str(file), "--keep", str(tmp_path)])
     assert result.exit_code == int(not good), result.output
-    names = [json.loads(line).get("name", "fault") for line in file.read_text().splitlines()]
-    assert names == ["fault", "busy", "random commands", "inputs: users"]
+    lines = [json.loads(line) for line in file.read_text().splitlines()]
+    assert all(line["date"][:2] == "20" and "processors" in line["machine"] for line in lines)
+    assert [line.get("seed") for line in lines] == [1, None, None, 1, 1]
+    names = [line.get("name", "fault") for line in lines]
+    assert names == ["fault", "busy", "slow disk", "random commands", "inputs: users"]
+    assert [line["good"] for line in lines] == [good, True, None, True, True]
+    assert "slow disk: not tried, no root" in result.output
     assert "busy: cycles 1" in result.output and "random commands: " in result.output
 
 

@@ -51,6 +51,24 @@ def test_a_damaged_summary_is_named(run, tmp_path, place):
         )
 
 
+def test_an_index_of_messages_that_leads_nowhere(run, tmp_path):
+    """An offset of 2⁶³ and more (`mcap-motion`, seed 7, number 2530)."""
+    with cnc_ptp.recording.open(run) as opened:
+        (file,) = opened._files
+        (channel,) = file.ids_of("/x/state")
+        place = next(chunk for chunk in file.chunks if channel in chunk.indexes)
+        index = place.indexes[channel]
+    data = bytearray(run.read_bytes())
+    data[index + 9 + 6 + 8 : index + 9 + 6 + 16] = bytes([255] * 8)
+    path = tmp_path / "run.mcap"
+    path.write_bytes(data)
+    with cnc_ptp.recording.open(path) as opened:
+        assert refusal(lambda: opened.columns("/x/state")["set_position"]) == (
+            f"P-ERR-26003 recording {path}: corrupt at offset {place.offset}: a message index leads behind the end of the "
+            "chunk; nothing was read, take an intact copy of the file or save what is whole with 'cnc_ptp recover'"
+        )
+
+
 def without_crc(data):
     """As other programs write it."""
     data[-12:-8] = bytes(4)

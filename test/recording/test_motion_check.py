@@ -6,6 +6,7 @@ import itertools
 import json
 import shutil
 from collections.abc import Callable, Sequence
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -21,10 +22,10 @@ from cnc_ptp.machine.wiring import build_units, unit_kinds
 from cnc_ptp.parameters import machine_text, read_machine
 from cnc_ptp.plc.scenario import parse_scenario
 from cnc_ptp.recording.mcap_file import McapFile
-from cnc_ptp.recording.motion_check.check import check_motion, check_recording
+from cnc_ptp.recording.motion_check.check import check_motion, check_recording, steps_from
 from cnc_ptp.recording.motion_check.continuity import PEANO
 from cnc_ptp.recording.motion_check.findings import MotionResult
-from cnc_ptp.recording.motion_check.inputs import MotionInputs, read_inputs
+from cnc_ptp.recording.motion_check.inputs import MotionInputs, orders_by_unit, read_inputs
 from cnc_ptp.recording.offline_run import OfflineRun
 from cnc_ptp.recording.opened import OpenRecording
 from cnc_ptp.recording.writer import Recording
@@ -301,6 +302,100 @@ def test_a_flying_saw_that_leaves_a_path(tmp_path: Path) -> None:
     assert np.abs(jerk[2000:2100]).max() > inputs.machine.axes["x"].jerk
 
 
+UNTAKEN = [
+    ("x", "move_absolute", '{"target":'),
+    ("x", "move_absolute", "[1]"),
+    ("x", "move_absolute", "null"),
+    ("x", "move_absolute", "[" * 3000),
+    ("x", "move_relative", '{"target": 1.0}'),
+    ("x", "jump", "{}"),
+    ("x", "write_parameter", '{"parameter": "P-AXIS-00008"}'),
+    ("x", "write_parameter", '{"parameter": 8, "value": 1.0}'),
+    ("x", "set_coupling_factor", "{}"),
+    ("x", "couple", '{"factor": 1.0}'),
+    ("x", "couple", '{"factor": [], "master": "y"}'),
+    ("x", "begin_trajectory", '{"points": {}}'),
+    ("s", "couple", "{}"),
+    ("nobody", "stop", "{}"),
+]
+
+
+@pytest.mark.parametrize(("unit", "command", "arguments"), UNTAKEN)
+def test_a_command_that_no_unit_can_take_is_left_out(
+    inputs: MotionInputs, unit: str, command: str, arguments: str
+) -> None:
+    good = (5, unit, "reset", "", True)
+    orders = orders_by_unit(inputs.machine, [(5, unit, command, arguments, True), good, (6, "x", "stop", "{}", False)])
+    assert {name: [each.command for each in of_unit] for name, of_unit in orders.items()} == (
+        {} if unit == "nobody" else {unit: ["reset"]}
+    )
+
+
+def test_commands_of_other_versions_are_taken(inputs: MotionInputs) -> None:
+    """A former name, an argument that is no longer known, a table with the name of its file."""
+    rows = [
+        (0, "x", "power", '{"on": true, "slowly": 1}', True),
+        (1, "x", "couple_cam", '{"master": "y", "table": [], "file": "cam.csv"}', True),
+    ]
+    power, cam = orders_by_unit(inputs.machine, rows)["x"]
+    assert (power.arguments["enabled"], cam.command) == (True, "couple_cam")
+
+
+@pytest.mark.parametrize(
+    ("command", "arguments"),
+    [
+        ("write_parameter", {"parameter": "P-AXIS-99999", "value": 1.0}),
+        ("begin_trajectory", {"points": [1]}),
+        ("emergency_stop", {"deceleration": 10**400}),
+        ("stop", {"deceleration": 1e-300, "jerk": 1e-300}),
+    ],
+)
+def test_values_that_no_unit_can_have_taken_break_nothing(
+    inputs: MotionInputs, command: str, arguments: dict[str, Any]
+) -> None:
+    order = inputs.orders["y"][-1]
+    inputs.orders["y"].append(type(order)(inputs.axes["y"]["cycle"][-1] + 1, command, arguments))
+    assert check_motion(inputs).violations == []
+    inputs.orders["y"][-1] = type(order)(60, command, arguments)
+    check_motion(inputs)
+
+
+STRONGER = """
+- {at: 0.0, to: x, do: move_absolute, target: 20, velocity: 100, acceleration: 20000, deceleration: 20000, jerk: 2e7}
+- {at: 0.0, to: y, do: move_superimposed, distance: 5, acceleration: 20000, deceleration: 20000, jerk: 2e7}
+"""
+
+
+def test_no_command_raises_a_limit_above_the_largest_permitted(tmp_path: Path) -> None:
+    """A kernel that takes what it has to refuse (23013): here one whose P-AXIS-00008 was larger than the file says."""
+    machine, text = tmp_path / "stronger.yaml", MILL.read_text()
+    machine.write_text(text.replace("a_max: 4000", "a_max: 40000"))
+    shutil.copytree(MILL.parent / "tools", tmp_path / "tools")
+    run = make_run(tmp_path / "run.mcap", STRONGER, machine)
+    with OpenRecording(run) as recording:
+        inputs = read_inputs(recording)
+    assert check_motion(inputs).violations == []
+    inputs.machine = read_machine(str(MILL))
+    limits = {each.unit: each.limit for each in check_motion(inputs).violations if each.what == "acceleration"}
+    assert limits == {"x": 4000.0, "y": 1800.0 + 4000.0}
+    assert {each.unit for each in check_motion(inputs).violations if each.what == "step of acceleration"} == {"x"}
+
+
+def test_a_slope_relaxes_the_axes_of_its_channel_from_its_text_on() -> None:
+    machine = read_machine(str(ROOT / "examples" / "spindles" / "two_channels.yaml"))
+    first, second = machine.channels.values()
+    inputs = MotionInputs(machine, 1e-3, {name: {"cycle": np.arange(10)} for name in machine.axes})
+    own, others = first.axes[0].node, second.axes[0].node
+    assert (steps_from(inputs, own), steps_from(inputs, others)) == (inf, inf)
+    load = {"program": "main.nc", "text": "G0 X1", "files": {"sub.nc": "#slope [TYPE=STEP]"}}
+    orders = [(3, first.name, "load", json.dumps({"program": "#SLOPE"}), True)]
+    orders += [(cycle, first.name, "load", json.dumps(load), True) for cycle in (7, 9)]
+    inputs.orders = orders_by_unit(machine, orders)
+    assert (steps_from(inputs, own), steps_from(inputs, others)) == (7, inf)
+    inputs.axes[own] = {"cycle": np.arange(5, 10)}
+    assert steps_from(inputs, own) == 0.0
+
+
 # closed forms
 
 
@@ -383,6 +478,40 @@ def test_fields_that_were_not_recorded(path: Path, monkeypatch: pytest.MonkeyPat
     assert (
         refused(path) == f"P-ERR-26264 recording {path}: /x/state was recorded without set_snap; no motion was checked"
     )
+
+
+@pytest.mark.parametrize(
+    ("topic", "column", "wrong"),
+    [
+        ("/x/state", "set_position", np.zeros((5, 2))),
+        ("/x/state", "state", np.array(["a"] * 5)),
+        ("/commands", "target", np.zeros(5)),
+        ("/commands", "cycle", np.array(["a"] * 5, dtype=object)),
+    ],
+)
+def test_fields_of_another_type(
+    path: Path, monkeypatch: pytest.MonkeyPatch, topic: str, column: str, wrong: np.ndarray[Any, Any]
+) -> None:
+    read = OpenRecording.columns
+
+    def columns(self: OpenRecording, name: str, *fields: str) -> dict[str, Any]:
+        return {**read(self, name, *fields)} | ({column: wrong} if name == topic else {})
+
+    monkeypatch.setattr(OpenRecording, "columns", columns)
+    reason = f"{topic} was recorded with another type of {column}; no motion was checked"
+    assert refused(path) == f"P-ERR-26264 recording {path}: {reason}"
+
+
+def test_units_of_which_nothing_is_left(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As in a damaged file, whose summary counts messages that no index names."""
+    read = OpenRecording.columns
+
+    def columns(self: OpenRecording, name: str, *fields: str) -> dict[str, Any]:
+        return {field: column[:0] for field, column in read(self, name, *fields).items()}
+
+    monkeypatch.setattr(OpenRecording, "columns", columns)
+    reason = "holds no setpoints of an axis or a spindle; no motion was checked"
+    assert refused(path) == f"P-ERR-26262 recording {path}: {reason}"
 
 
 def test_a_missing_file(tmp_path: Path) -> None:

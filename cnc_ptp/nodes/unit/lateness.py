@@ -16,6 +16,15 @@ class Lateness:
         self.counts: Counter[int] = Counter()
         self.largest_us = 0
 
+    @classmethod
+    def between(cls, first: msg.LatenessHistogram | None, last: msg.LatenessHistogram) -> Lateness:
+        """What the later one of two messages of a node has more; its largest lateness is that since the start."""
+        late = cls()
+        late.merge(last)
+        if first is not None:
+            late.counts.subtract(dict(zip(first.step, first.blocks, strict=True)))
+        return late
+
     def add(self, lateness_us: int) -> None:
         self.counts[max(0, lateness_us) // STEP_US] += 1
         self.largest_us = max(self.largest_us, lateness_us)

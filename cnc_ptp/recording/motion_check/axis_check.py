@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from itertools import chain
 from math import inf
 
 import numpy as np
 
+from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import AxisParameters
 from cnc_ptp.parameters.check.runtime_change import changed
 from cnc_ptp.parameters.view.axis_view import axis_view
@@ -37,11 +39,19 @@ DYNAMICS = ("acceleration", "deceleration", "jerk")
 class AxisCheck:
     """Checks one axis; other axes of the run give the setpoints of its masters."""
 
-    def __init__(self, name: str, inputs: MotionInputs, *, steps: bool, result: MotionResult) -> None:
-        """`steps`: a path may step the acceleration (#SLOPE, P-CHAN-00071)."""
-        self.inputs, self.name, self.steps = inputs, name, steps
+    def __init__(self, name: str, inputs: MotionInputs, *, steps_from: float, result: MotionResult) -> None:
+        """`steps_from`: cycle from which on a path may step the acceleration (#SLOPE, P-CHAN-00071)."""
+        self.inputs, self.name, self.steps_from = inputs, name, steps_from
         self.parameters: AxisParameters = inputs.machine.axes[name]
         self.orders: Sequence[Order] = inputs.orders_of(name)
+        self.written = self._written()
+        """Parameters after each `write_parameter`."""
+        self.ever = [self.parameters, *(parameters for _, parameters in self.written)]
+        """All parameters that it has had."""
+        self.most = max(each.max_acceleration for each in self.ever)
+        """No command may ask for more (P-AXIS-00008), …"""
+        self.most_abrupt = max(self.most, *(each.emergency_deceleration for each in self.ever))
+        """… but for an emergency stop (P-AXIS-00003)."""
         self.columns: Columns = inputs.axes[name]
         self.cycles = self.columns["cycle"]
         self.state, bits = self.columns["state"], self.columns["status_bits"].astype(np.int64)
@@ -90,19 +100,20 @@ class AxisCheck:
             jerk=own.jerk,
             velocity=own.max_velocity,
         )
-        for order, parameters in self._written():
+        for order, parameters in self.written:
             rows = slice(self.stretches.row(order.cycle), None)
             laws.growth[rows], laws.reduction[rows] = parameters.acceleration, parameters.deceleration
             laws.jerk[rows], laws.velocity[rows] = parameters.jerk, parameters.max_velocity
         return laws
 
     def _written(self) -> list[tuple[Order, AxisParameters]]:
-        """Parameters after each `write_parameter`."""
+        """Without a value that the axis cannot have had."""
         found, raw = [], self.parameters.raw
         for order in self.orders:
             if order.command == "write_parameter" and raw is not None:
-                raw = changed(raw, str(order.arguments["parameter"]), float(order.arguments["value"])).own
-                found.append((order, axis_view(raw, self.inputs.cycle_time)))
+                with suppress(CncError):
+                    raw = changed(raw, order.arguments["parameter"], float(order.arguments["value"])).own
+                    found.append((order, axis_view(raw, self.inputs.cycle_time)))
         return found
 
     def _take_orders(self) -> Numbers:
@@ -115,7 +126,7 @@ class AxisCheck:
                 self._take_abrupt(rows, order, abrupt)
             elif order.command not in ADDED:
                 for column, name in zip((laws.growth, laws.reduction, laws.jerk), DYNAMICS, strict=True):
-                    column[rows] = np.maximum(column[rows], order.number(name))
+                    column[rows] = np.maximum(column[rows], self._asked(order, name))
             if order.command == "begin_trajectory":
                 self._take_trajectory(rows, order)
         raised = abrupt > laws.reduction
@@ -129,11 +140,14 @@ class AxisCheck:
     def _take_abrupt(self, rows: slice, order: Order, abrupt: Numbers) -> None:
         """P-AXIS-00003, or what the command asks for up to P-AXIS-00008; a jerk of it up to A/T."""
         own = self.parameters
-        most = max(own.max_acceleration, own.emergency_deceleration)
-        asked = max(min(order.number("deceleration"), most), own.emergency_deceleration, own.deceleration)
+        asked = max(min(order.number("deceleration"), self.most_abrupt), own.emergency_deceleration, own.deceleration)
         abrupt[rows] = np.maximum(abrupt[rows], asked)
-        jerk = min(order.number("jerk"), most / self.inputs.cycle_time)
+        jerk = min(order.number("jerk"), self.most_abrupt / self.inputs.cycle_time)
         self.laws.jerk[rows] = np.maximum(self.laws.jerk[rows], jerk)
+
+    def _asked(self, order: Order, name: str) -> float:
+        """What a command asks for, up to P-AXIS-00008, of a jerk up to A/T; 0.0 if it does not say it."""
+        return min(order.number(name), self.most / self.inputs.cycle_time if name == "jerk" else self.most)
 
     def _given(self, command: str) -> list[Order]:
         return [order for order in self.orders if order.command == command]
@@ -148,19 +162,19 @@ class AxisCheck:
         acceleration, jerk = np.zeros(len(self.cycles)), np.zeros(len(self.cycles))
         for order in orders:
             rows = self.stretches.of(order.cycle)
-            up, down = order.number("acceleration"), order.number("deceleration")
+            up, down, jerks = (self._asked(order, name) for name in DYNAMICS)
             asked = np.maximum(up or self.laws.growth[rows], down or self.laws.reduction[rows])
             acceleration[rows] = np.maximum(acceleration[rows], asked)
-            jerk[rows] = np.maximum(jerk[rows], order.number("jerk") or self.laws.jerk[rows])
+            jerk[rows] = np.maximum(jerk[rows], jerks or self.laws.jerk[rows])
         return acceleration, jerk
 
     def _take_trajectory(self, rows: slice, order: Order) -> None:
         """Without velocities it has steps of them, otherwise of the acceleration."""
-        points = order.arguments["points"]
+        points = [row for row in order.arguments["points"] if isinstance(row, list)]
         bare = not points or len([value for value in points[0] if value is not None]) <= 2
         self.laws.permit(rows, FREE if bare else STEP)
         for column in (self.laws.growth, self.laws.reduction):
-            column[rows] = np.maximum(column[rows], self.parameters.max_acceleration)
+            column[rows] = np.maximum(column[rows], self.most)
 
     def _take_states(self) -> None:
         laws, own = self.laws, self.parameters
@@ -168,11 +182,10 @@ class AxisCheck:
         strongest = max(own.acceleration, own.deceleration)
         for column in (laws.growth, laws.reduction):
             column[path] = np.maximum(column[path], strongest)
-            column[self.external] = np.maximum(column[self.external], own.max_acceleration)
+            column[self.external] = np.maximum(column[self.external], self.most)
         laws.velocity[path] = max(own.max_velocity, own.rapid_velocity)
         laws.relative[path], laws.kinks = ON_PATH, path
-        if self.steps:
-            laws.permit(path, STEP)
+        laws.permit(path & (self.cycles >= self.steps_from), STEP)
         laws.permit(self.added, STEP)
         laws.permit(self.external, FREE)
         self._take_unknown()
@@ -264,22 +277,22 @@ class AxisCheck:
 
         A motion may be stopped with the dynamics of the command that began it.
         """
-        points, own = self.points, [self.parameters, *(parameters for _, parameters in self._written())]
+        points, own = self.points, self.ever
         rests = np.flatnonzero(self.resting[:row])
         began = self.cycles[rests[-1]] if len(rests) else 0
         given = [each for each in self.orders if began <= each.cycle <= order.cycle]
         braking = min([*(each.deceleration for each in own), *(each.number("deceleration") or inf for each in given)])
         jerk = min([*(each.jerk for each in own), *(each.number("jerk") or inf for each in given)])
-        acceleration, velocity = abs(points.acceleration[row]), abs(points.velocity[row])
+        acceleration, velocity = (abs(float(column[row])) for column in (points.acceleration, points.velocity))
         turned = (acceleration + braking) / jerk
         seconds = turned + (velocity + acceleration * turned) / braking + braking / jerk
-        return int((PATIENCE * seconds + BEGINNING) / points.cycle_time)
+        return int(min(len(self.cycles), (PATIENCE * seconds + BEGINNING) / points.cycle_time))
 
     def _check_soft_limits(self) -> None:
         """No motion further out where the position is beyond a soft limit; soft limits move with set_position."""
         own, points = self.parameters, self.points
         low, high = (np.full(len(self.cycles), limit) for limit in (own.soft_limit_negative, own.soft_limit_positive))
-        for order, parameters in self._written():
+        for order, parameters in self.written:
             rows = slice(self.stretches.row(order.cycle), None)
             low[rows], high[rows] = parameters.soft_limit_negative, parameters.soft_limit_positive
         shift = self._shift()
@@ -375,7 +388,7 @@ class AxisCheck:
 def is_power(order: Order) -> bool:
     """Power on, by a command or by the HLI."""
     by_hli = order.command == "overlay" and order.arguments.get("control_unit") == "controller_enable"
-    return by_hli or (order.command == "power" and bool(order.arguments.get("enabled", order.arguments.get("on"))))
+    return by_hli or (order.command == "power" and bool(order.arguments.get("enabled")))
 
 
 def setpoints_of(columns: Mapping[str, Numbers], cycle_time: float, length: str) -> Setpoints:

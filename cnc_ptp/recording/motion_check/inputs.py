@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -11,7 +10,11 @@ import numpy as np
 import numpy.typing as npt
 
 from cnc_ptp.errors import CncError
+from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.parameters import MachineParameters, load_machine
+from cnc_ptp.protocol.commands import COMMANDS as COMMANDS_OF
+from cnc_ptp.protocol.commands import FILE_CONTENTS, check_arguments, current_names
+from cnc_ptp.recording.command_words import json_object
 from cnc_ptp.recording.opened import OpenRecording
 from cnc_ptp.recording.origin import FOREIGN
 from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, SPINDLE_STATE
@@ -49,6 +52,7 @@ SPINDLE_FIELDS = (
 )
 COMMANDS = "/commands"
 COMMAND_FIELDS = ("cycle", "target", "command", "arguments_json", "accepted")
+TEXTS = frozenset({"target", "command", "arguments_json"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +67,7 @@ class Order:
         """A positive number among the arguments, also as text (inf); 0.0 if there is none."""
         try:
             value = float(self.arguments.get(name) or 0.0)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             return 0.0
         return value if value > 0.0 else 0.0
 
@@ -92,31 +96,56 @@ def read_inputs(recording: OpenRecording) -> MotionInputs:
     }
     if not recording.metadata and not any(units.values()):
         raise CncError(FOREIGN, f"recording {recording.path}: is not of cnc_ptp", UNCHECKED)
-    if not units[AXIS_STATE] and not units[SPINDLE_STATE]:
+    axes = _of_units(recording, units[AXIS_STATE], AXIS_FIELDS)
+    spindles = _of_units(recording, units[SPINDLE_STATE], SPINDLE_FIELDS)
+    if not axes and not spindles:
         reason = f"recording {recording.path}: holds no setpoints of an axis or a spindle"
         raise CncError(NO_SETPOINTS, reason, UNCHECKED)
-    inputs = MotionInputs(_machine(recording), _cycle_time(recording))
-    for topic in units[AXIS_STATE]:
-        inputs.axes[_unit(topic)] = _columns(recording, topic, AXIS_FIELDS)
-    for topic in units[SPINDLE_STATE]:
-        inputs.spindles[_unit(topic)] = _columns(recording, topic, SPINDLE_FIELDS)
-    for topic in units[CHANNEL_STATE]:
-        inputs.channels[_unit(topic)] = np.sort(recording.columns(topic, "cycle")["cycle"].astype(np.int64))
+    inputs = MotionInputs(_machine(recording), _cycle_time(recording), axes, spindles)
+    channels = _of_units(recording, units[CHANNEL_STATE], ("cycle",))
+    inputs.channels = {name: columns["cycle"] for name, columns in channels.items()}
     _require_parameters(recording, inputs)
     _require_commands(recording, inputs)
-    inputs.orders = orders_by_unit(_commands(recording))
+    inputs.orders = orders_by_unit(inputs.machine, _commands(recording))
     return inputs
 
 
-def orders_by_unit(commands: Iterable[tuple[int, str, str, str, bool]]) -> dict[str, list[Order]]:
-    """Accepted ones of (cycle, target, command, arguments as JSON, accepted), in the order of their cycles."""
+def orders_by_unit(
+    machine: MachineParameters, commands: Iterable[tuple[int, str, str, str, bool]]
+) -> dict[str, list[Order]]:
+    """Accepted ones of (cycle, target, command, arguments as JSON, accepted), in the order of their cycles.
+
+    What no unit of the machine could take is left out.
+    """
+    kinds = unit_kinds(machine)
     orders: dict[str, list[Order]] = {}
-    for cycle, target, command, arguments, accepted in commands:
-        if accepted:
-            orders.setdefault(target, []).append(Order(int(cycle), command, json.loads(arguments or "{}")))
+    for cycle, target, command, arguments_json, accepted in commands:
+        kind, arguments = kinds.get(target, ""), json_object(arguments_json or "{}")
+        if accepted and kind and arguments is not None:
+            arguments = current_names(kind, command, arguments)
+            if could_be_taken(kind, command, arguments):
+                orders.setdefault(target, []).append(Order(int(cycle), command, arguments))
     for of_unit in orders.values():
         of_unit.sort(key=lambda order: order.cycle)
     return orders
+
+
+def could_be_taken(kind: str, command: str, arguments: Mapping[str, Any]) -> bool:
+    """A unit of this kind knows the command, and its arguments are there, each of its kind.
+
+    Further ones, which another version may have recorded, do not count, nor does the name of the file of a table.
+    """
+    specification = COMMANDS_OF[kind].get(command)
+    if specification is None:
+        return False
+    known = {name: value for name, value in arguments.items() if name in specification}
+    if not FILE_CONTENTS.isdisjoint(known):
+        known.pop("file", None)
+    try:
+        check_arguments(command, specification, known)
+    except CncError:
+        return False
+    return True
 
 
 def in_order(columns: Columns) -> Columns:
@@ -128,13 +157,35 @@ def in_order(columns: Columns) -> Columns:
     return {name: column[first] for name, column in columns.items()} | {"cycle": cycles[first]}
 
 
+def _of_units(recording: OpenRecording, topics: Iterable[str], fields: Sequence[str]) -> dict[str, Columns]:
+    """By name; without units of which nothing is left."""
+    found = {_unit(topic): _columns(recording, topic, fields) for topic in topics}
+    return {name: columns for name, columns in found.items() if len(columns["cycle"])}
+
+
 def _columns(recording: OpenRecording, topic: str, fields: Sequence[str]) -> Columns:
     lacking = [name for name in fields if name not in recording.topics[topic].fields]
     if lacking:
         reason = f"recording {recording.path}: {topic} was recorded without {', '.join(lacking)}"
         raise CncError(LACKS_FIELDS, reason, UNCHECKED)
-    columns = recording.columns(topic, *fields)
+    columns = _typed(recording, topic, fields)
     return in_order({name: columns[name] for name in fields})
+
+
+def _typed(recording: OpenRecording, topic: str, fields: Sequence[str]) -> Columns:
+    """Raises CncError 26264 where they are no columns of numbers, or of texts."""
+    columns = recording.columns(topic, *fields)
+    foreign = [name for name in fields if not _has_type(name, columns[name])]
+    if foreign:
+        reason = f"recording {recording.path}: {topic} was recorded with another type of {', '.join(foreign)}"
+        raise CncError(LACKS_FIELDS, reason, UNCHECKED)
+    return columns
+
+
+def _has_type(name: str, column: Column) -> bool:
+    if name in TEXTS:
+        return all(isinstance(value, str) for value in column)
+    return column.ndim == 1 and column.dtype.kind in "biuf"
 
 
 def _require_commands(recording: OpenRecording, inputs: MotionInputs) -> None:
@@ -149,7 +200,7 @@ def _require_commands(recording: OpenRecording, inputs: MotionInputs) -> None:
 def _commands(recording: OpenRecording) -> list[tuple[int, str, str, str, bool]]:
     if COMMANDS not in recording.topics:
         return []
-    columns = recording.columns(COMMANDS, *COMMAND_FIELDS)
+    columns = _typed(recording, COMMANDS, COMMAND_FIELDS)
     return list(zip(*(columns[name] for name in COMMAND_FIELDS), strict=True))
 
 
