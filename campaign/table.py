@@ -33,7 +33,7 @@ def summary(rows: Sequence[Row]) -> str:
     of = Counter(row.outcome for row in rows)
     parts = [f"{of['stopped']} stops", f"{of['survived']} runs that continued"]
     parts += [f"{of[ENDLESS]} runs that did not end"] if of[ENDLESS] else []
-    parts += [f"{of['']} runs that did not begin"] if of[""] else []
+    parts += [f"{of['']} runs in which there was no fault"] if of[""] else []
     parts.append(f"{sum(len(row.problems) for row in rows)} problems")
     happened = len(rows) - of["over"] - of[""]
     return f"{happened} faults ({of['over']} came after the end of their run): {', '.join(parts)}"

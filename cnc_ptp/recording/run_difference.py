@@ -177,7 +177,7 @@ def notes_of_programs(channel: str, programs: Iterable[npt.NDArray[np.bool_]], n
     """The runs, by name, in whose last cycle a program is in progress."""
     running = [name for name, cycles in zip(names, programs, strict=True) if len(cycles) and cycles[-1]]
     if running:
-        yield f"the program of {channel} has not ended in {' and '.join(running)}: its time is that so far"
+        yield f"the program of {channel} has not ended there in {' and '.join(running)}: its time is that so far"
 
 
 def same_machine(first: OpenRecording, second: OpenRecording) -> MachineParameters:

@@ -209,12 +209,16 @@ class SpindleCycles:
             return True
         if spindle.work.procedure is not None or self._queue.waiting:
             return False
-        if spindle.state not in SETTLED and (spindle.state != S.STOPPING or spindle.finished(last_cycle)):
+        if spindle.state not in SETTLED and (spindle.state != S.STOPPING or self._stands(last_cycle)):
             return False
         if self._patience_ends(last_cycle):
             return False
         limit = spindle.loop.undisturbed_speed
         return limit == inf or all(abs(spindle.motion(cycle)[1]) <= limit for cycle in (first_cycle, last_cycle))
+
+    def _stands(self, cycle: int) -> bool:
+        """The ramp has come to its end, or by a rounding error nearly so."""
+        return self._spindle.finished(cycle) or self._spindle.motion(cycle)[1] == 0.0
 
     def _patience_ends(self, last_cycle: int) -> bool:
         """The time for a missing speed (P-MACH-00050) or position (P-MACH-00014) ends by `last_cycle`."""

@@ -26,7 +26,10 @@ from cnc_ptp.web.hub import Hub
 from cnc_ptp.web.numbers import A_RECORDING, BAD_MESSAGE, TOO_MANY_MESSAGES
 from cnc_ptp.web.protocol import NOTHING, frame
 from cnc_ptp.web.rate import Rate
+from cnc_ptp.web.session import LONGEST_STALL
 
+MOST_SNAPSHOTS = 4
+"""That are made or sent at one time: each has a file until it was taken."""
 PIECE = 1 << 18
 """Bytes of a file that are sent together."""
 Words = Callable[[str], Sequence[tuple[str, str]]]
@@ -40,6 +43,7 @@ class DataRoutes:
     def __init__(self, hub: Hub, access: Access, words: Words) -> None:
         self._hub, self._access, self._words_of = hub, access, words
         self._snapshot_runs = asyncio.Lock()
+        self._snapshots = 0
         self._rate = Rate(10.0, 50.0)
 
     def add_to(self, app: web.Application) -> None:
@@ -111,13 +115,17 @@ class DataRoutes:
         login = self._access.login_of(request)
         require_role("snapshot", login.user, login.role, "operator")
         seconds, until = (number(request.query.get(name, "0")) for name in ("seconds", "until"))
-        if self._snapshot_runs.locked():
-            raise CncError(TOO_MANY_MESSAGES, "snapshot: another one is on its way", f"{NOTHING}; wait for it")
-        with tempfile.TemporaryDirectory(prefix="cnc_ptp-") as folder:
-            file = Path(folder) / "snapshot.mcap"
-            async with self._snapshot_runs:  # not while it is sent: who takes it slowly keeps nobody from another one
-                first = await self._hub.require_face().snapshot(str(file), seconds, until)
-            return await sent(request, file, {"X-First-Cycle": str(first)})
+        if self._snapshot_runs.locked() or self._snapshots >= MOST_SNAPSHOTS:
+            raise CncError(TOO_MANY_MESSAGES, "snapshot: others are being made or sent", f"{NOTHING}; wait for them")
+        self._snapshots += 1
+        try:
+            with tempfile.TemporaryDirectory(prefix="cnc_ptp-") as folder:
+                file = Path(folder) / "snapshot.mcap"
+                async with self._snapshot_runs:  # not while it is sent: who takes it slowly holds up nobody
+                    first = await self._hub.require_face().snapshot(str(file), seconds, until)
+                return await sent(request, file, {"X-First-Cycle": str(first)})
+        finally:
+            self._snapshots -= 1
 
 
 async def sent(request: web.Request, file: Path, fields: Mapping[str, str]) -> web.StreamResponse:
@@ -128,7 +136,13 @@ async def sent(request: web.Request, file: Path, fields: Mapping[str, str]) -> w
     await response.prepare(request)
     with file.open("rb") as stream:
         while piece := await asyncio.to_thread(stream.read, PIECE):
-            await response.write(piece)
+            try:
+                async with asyncio.timeout(LONGEST_STALL):
+                    await response.write(piece)
+            except TimeoutError:  # whoever takes nothing keeps no file on the disk
+                if request.transport is not None:
+                    request.transport.abort()
+                break
     return response
 
 

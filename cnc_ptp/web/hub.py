@@ -25,6 +25,8 @@ PERIOD = 0.04
 """Seconds between two states: 25 a second, so that it is more than 20 on a busy computer too."""
 AGAIN = 1.0
 """Seconds until a machine that was not found is looked for again."""
+FAREWELL = 1.0
+"""Seconds in which pages take the end of their server."""
 LOGINS_PERIOD = 0.5
 """Seconds between two looks at whether the logins of pages have ended."""
 WAITING = CncError(NO_MACHINE_YET, "no machine is found", "the page is filled as soon as there is one")
@@ -61,9 +63,11 @@ class Hub:
         self._tasks = [asyncio.create_task(self._live()), asyncio.create_task(self._watch_logins())]
 
     async def end(self) -> None:
-        """All sessions end; their jogs too."""
-        for session in [*self.sessions]:
-            await session.close()
+        """All sessions end; their jogs first, as a page that takes nothing holds up its farewell."""
+        sessions = [*self.sessions]
+        for session in sessions:
+            session.end_jogs()
+        await asyncio.gather(*(session.close(patience=FAREWELL) for session in sessions))
         for task in self._tasks:
             task.cancel()
             with contextlib.suppress(asyncio.CancelledError):

@@ -71,8 +71,8 @@ class Jogs:
     def take(self, message: Message) -> None:
         """`jog`: axis, velocity (mm/s, deg/s), sequence, time (ms, of the page's clock).
 
-        Raises CncError 26111, 26233, 26235, 26236; one message says that a jog has ended, or does not begin (26243,
-        26259).
+        Raises CncError 26111, 26218, 26233, 26235, 26236; one message says that a jog has ended, or does not begin
+        (26243, 26259).
         """
         axis, velocity = self._axis(message), field(message, "velocity", "number")
         sequence, sent = field(message, "sequence", "integer"), field(message, "time", "number")
@@ -83,34 +83,34 @@ class Jogs:
         late = self._lateness(sent * 1e-3)
         if sequence != 1 and axis not in self._held:
             return  # of a jog that has ended
-        reason = self._objection(axis, sequence, late)
+        left = PATIENCE - late - 0.5 * self._round_trip
+        reason = self._objection(axis, sequence, late, left)
         if reason is not None:
             self._break_off(axis, reason)
             return
         self._session.hub.require_face().jog(axis, velocity, user=self._session.user)
-        self._hold(axis, velocity, sequence, late)
+        self._hold(axis, velocity, sequence, left)
 
-    def _objection(self, axis: str, sequence: int, late: float) -> CncError | None:
-        """Why a message does not count; `late` in s."""
+    def _objection(self, axis: str, sequence: int, late: float, left: float) -> CncError | None:
+        """Why a message does not count; `late` and how long it counts, in s."""
         press = self._held.get(axis)
         if self._round_trip > LONGEST_ROUND_TRIP:
             text = f"axis {axis}: {self._round_trip * 1e3:.0f} ms to the server and back"
             return CncError(ROUND_TRIP, f"{text}, a jog takes at most {LONGEST_ROUND_TRIP * 1e3:.0f} ms", STANDS)
         if sequence == 1:
             text = f"axis {axis}: the jog came {late:.2f} s late"
-            return CncError(JOG_ENDED, text, STANDS) if late > LATE else None
+            return CncError(JOG_ENDED, text, STANDS) if late > LATE or left <= 0.0 else None
         assert press is not None
-        if late > LATE or sequence <= press.sequence or self._now() > press.until:
+        if late > LATE or left <= 0.0 or sequence <= press.sequence or self._now() > press.until:
             return too_late(axis)
         return None
 
-    def _hold(self, axis: str, velocity: float, sequence: int, late: float) -> None:
+    def _hold(self, axis: str, velocity: float, sequence: int, left: float) -> None:
         before = self._held.get(axis)
         if before is not None:
             before.silence.cancel()
-        seconds = PATIENCE - late - 0.5 * self._round_trip
-        silence = self._later(seconds, partial(self._fall_silent, axis))
-        self._held[axis] = Press(sequence, self._now() + seconds, silence)
+        silence = self._later(left, partial(self._fall_silent, axis))
+        self._held[axis] = Press(sequence, self._now() + left, silence)
         if sequence == 1:
             self._note(axis, f"jog with {velocity:g} begins")
 
@@ -124,7 +124,7 @@ class Jogs:
         round_trip = field(message, "round_trip", "number", None)
         self._lateness(sent * 1e-3)
         if round_trip is not None:
-            self._round_trip = round_trip * 1e-3
+            self._round_trip = max(0.0, round_trip * 1e-3)
         return sent
 
     def take_stop(self, message: Message) -> None:

@@ -211,10 +211,12 @@ class Session:
 
     # the end
 
-    async def close(self, code: int = WSCloseCode.GOING_AWAY, reason: str = "") -> None:
-        """With a farewell; a page that does not even take that is cut off."""
+    async def close(
+        self, code: int = WSCloseCode.GOING_AWAY, reason: str = "", *, patience: float = LONGEST_STALL
+    ) -> None:
+        """With a farewell; a page that does not even take that within `patience` (s) is cut off."""
         try:
-            async with asyncio.timeout(LONGEST_STALL):
+            async with asyncio.timeout(patience):
                 await self._socket.close(code=code, message=reason.encode()[:120])
         except TimeoutError:
             self.abort()

@@ -157,7 +157,7 @@ def test_programs_that_have_not_ended_are_named(tmp_path: Path) -> None:
         simulated(tmp_path / f"{name}.mcap", "--program", program, machine=MILL, duration=duration)
         for name, duration in (("ended", 5.0), ("cut", 0.7))
     )
-    so_far = "the program of channel has not ended in {}: its time is that so far"
+    so_far = "the program of channel has not ended there in {}: its time is that so far"
     assert difference(ended, cut).notes[1:] == [so_far.format(cut)]
     both = difference(ended, cut, end=0.5, names=("A", "B"))
     assert both.notes == [so_far.format("A and B")]

@@ -129,6 +129,23 @@ def test_a_spindle_that_stands_does_not_accelerate(rate: float, cycles: int) -> 
     assert not np.array(bench.column("s", "set_acceleration_deg_s2"))[stands].any()
 
 
+@pytest.mark.parametrize("rate", [1227.2, 2755.4, 3453.9, 4830.8])
+def test_a_spindle_that_comes_to_rest_in_the_last_cycle_of_a_block_stands_there(rate: float) -> None:
+    """From the speed that it reaches in 29 ms; there, too, rounding leaves a rest of the ramp."""
+    bench = MachineBench(machine=MILL, end_when_idle=False)
+    bench.run(0.01)
+    assert bench.give("s", "set_limits", max_acceleration=rate).accepted
+    bench.run(0.01)
+    assert bench.give("s", "start", speed_rpm=rate * 0.029 / 6.0, direction="cw").accepted
+    bench.run(0.05)
+    assert bench.give("s", "stop").accepted
+    bench.run(0.06)
+    speed, state = np.array(bench.column("s", "set_speed_rpm")), np.array(bench.column("s", "state"))
+    rest = np.flatnonzero(speed)[-1] + 1
+    assert rest % 10 == 9 and (state[rest:] == S.STANDSTILL).all()
+    assert not np.array(bench.column("s", "set_acceleration_deg_s2"))[rest:].any()
+
+
 def test_a_zero_speed_of_0_is_still_reached() -> None:
     bench = spindle_bench(zero_speed=0.0)
     bench.run(10)

@@ -227,8 +227,8 @@ def test_no_cookie():
 
 
 BAD_NAME = (
-    "is no name of a program: at most 80 ASCII letters, digits, blanks, _ . + -, "
-    "at first a letter, digit or _, at last .nc, .ngc, .cnc, .tap, .mpf, .spf"
+    "is no name of a program: up to 80 ASCII letters, digits, blanks and _ . + -, "
+    "beginning with a letter, digit or _, ending in .nc, .ngc, .cnc, .tap, .mpf, .spf"
 )
 
 

@@ -120,7 +120,7 @@ def test_commands_that_wait_end_with_the_right_of_their_page(monkeypatch, tmp_pa
             held = f"cora (page {other.hello['page']}) holds it"
             text = f"axis x: move_absolute: this page does not hold the command, {held}; nothing was done"
             assert (refused["number"], refused["text"]) == (26236, text)
-        for told in ("carried out", f"no answer, P-ERR-{26239 if end == 'log_out' else 26236}"):
+        for told in ("carried out", f"not sent, P-ERR-{26239 if end == 'log_out' else 26236}"):
             text = f"otto: axis x: move_absolute, {told}"
             assert await other.wait_for("event", lambda event, text=text: event["text"] == text)
         assert slow.begun == ["move_absolute"]

@@ -180,6 +180,45 @@ def test_the_stop_comes_a_fifth_of_a_second_after_the_last_message_was_sent(late
     assert heard.jogs == [5.0, 5.0, 5.0, 0.0], "of a jog that has ended"
 
 
+@pytest.mark.parametrize("sequence", [1, 2])
+def test_a_message_whose_time_is_over_moves_nothing(sequence):
+    """0.14 s late, and 0.07 s on its way at the least."""
+    heard = Heard()
+    heard.under_test.take_ping({"type": "ping", "time": heard.now * 1e3, "round_trip": 140.0})
+    if sequence == 2:
+        heard.message(1, sent=heard.now)
+        heard.pass_by(0.05)
+    heard.now += 0.14
+    heard.message(sequence, sent=heard.now - 0.14)
+    assert heard.jogs == ([5.0, 0.0] if sequence == 2 else [])
+    assert [message["number"] for message in heard.told] == [26243]
+
+
+def test_a_round_trip_below_0_gives_no_more_time():
+    heard = Heard()
+    heard.under_test.take_ping({"type": "ping", "time": heard.now * 1e3, "round_trip": -100.0})
+    heard.message(1, sent=heard.now)
+    heard.pass_by(0.201)
+    assert heard.jogs == [5.0, 0.0]
+
+
+def test_the_server_ends_a_jog_by_its_own_clock():
+    """The machine stands still: what ends the jog is the timer of the server."""
+
+    async def story():
+        async with standing_site() as here:
+            page = await here.page()
+            face, jogs = here.hub.face, []
+            pass_on = face.jog
+            face.jog = lambda axis, velocity, user: (jogs.append(velocity), pass_on(axis, velocity, user=user))
+            now = asyncio.get_running_loop().time() * 1e3
+            await page.send(type="jog", axis="x", velocity=20.0, sequence=1, time=now)
+            ended = await page.wait_for("jog_ended")
+            assert ended["number"] == 26243 and jogs == [20.0, 0.0]
+
+    asyncio.run(story())
+
+
 def test_a_key_that_came_up_has_no_end_of_its_own():
     heard = Heard()
     heard.message(1, sent=heard.now)

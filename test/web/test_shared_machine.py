@@ -156,7 +156,7 @@ def test_a_snapshot_is_sent_piece_by_piece_and_alone(monkeypatch, users):
         first = asyncio.create_task(here.client.get("/api/snapshot.mcap?seconds=2.5&until=7.25"))
         await asyncio.sleep(0.2)
         answer = await here.client.get("/api/snapshot.mcap")
-        text = "snapshot: another one is on its way; nothing was done; wait for it"
+        text = "snapshot: others are being made or sent; nothing was done; wait for them"
         assert (answer.status, (await answer.json())["text"]) == (429, text)
         may_end.set()
         answer = await first

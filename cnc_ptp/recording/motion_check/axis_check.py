@@ -112,8 +112,9 @@ class AxisCheck:
         for order in self.orders:
             if order.command == "write_parameter" and raw is not None:
                 with suppress(CncError):
-                    raw = changed(raw, order.arguments["parameter"], float(order.arguments["value"])).own
-                    found.append((order, axis_view(raw, self.inputs.cycle_time)))
+                    new = changed(raw, order.arguments["parameter"], float(order.arguments["value"])).own
+                    found.append((order, axis_view(new, self.inputs.cycle_time)))
+                    raw = new
         return found
 
     def _take_orders(self) -> Numbers:
@@ -139,11 +140,15 @@ class AxisCheck:
 
     def _take_abrupt(self, rows: slice, order: Order, abrupt: Numbers) -> None:
         """P-AXIS-00003, or what the command asks for up to P-AXIS-00008; a jerk of it up to A/T."""
-        own = self.parameters
+        own = self._parameters_at(order.cycle)
         asked = max(min(order.number("deceleration"), self.most_abrupt), own.emergency_deceleration, own.deceleration)
         abrupt[rows] = np.maximum(abrupt[rows], asked)
         jerk = min(order.number("jerk"), self.most_abrupt / self.inputs.cycle_time)
         self.laws.jerk[rows] = np.maximum(self.laws.jerk[rows], jerk)
+
+    def _parameters_at(self, cycle: int) -> AxisParameters:
+        before = [parameters for order, parameters in self.written if order.cycle <= cycle]
+        return before[-1] if before else self.parameters
 
     def _asked(self, order: Order, name: str) -> float:
         """What a command asks for, up to P-AXIS-00008, of a jerk up to A/T; 0.0 if it does not say it."""

@@ -123,29 +123,30 @@ def orders_by_unit(
         kind, arguments = kinds.get(target, ""), json_object(arguments_json or "{}")
         if accepted and kind and arguments is not None:
             arguments = current_names(kind, command, arguments)
-            if could_be_taken(kind, command, arguments):
-                orders.setdefault(target, []).append(Order(int(cycle), command, arguments))
+            taken = what_is_taken(kind, command, arguments)
+            if taken is not None:
+                orders.setdefault(target, []).append(Order(int(cycle), command, taken))
     for of_unit in orders.values():
         of_unit.sort(key=lambda order: order.cycle)
     return orders
 
 
-def could_be_taken(kind: str, command: str, arguments: Mapping[str, Any]) -> bool:
-    """A unit of this kind knows the command, and its arguments are there, each of its kind.
+def what_is_taken(kind: str, command: str, arguments: Mapping[str, Any]) -> dict[str, Any] | None:
+    """The arguments of a command that a unit of this kind takes; None where one is missing or of another kind.
 
     Further ones, which another version may have recorded, do not count, nor does the name of the file of a table.
     """
     specification = COMMANDS_OF[kind].get(command)
     if specification is None:
-        return False
+        return None
     known = {name: value for name, value in arguments.items() if name in specification}
     if not FILE_CONTENTS.isdisjoint(known):
         known.pop("file", None)
     try:
         check_arguments(command, specification, known)
     except CncError:
-        return False
-    return True
+        return None
+    return known
 
 
 def in_order(columns: Columns) -> Columns:

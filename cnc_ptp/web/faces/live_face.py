@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import asyncio
-from collections import defaultdict, deque
+import time
+from collections import deque
 from collections.abc import Mapping
 from concurrent.futures import Future
 from functools import partial
-from itertools import count
 from math import inf
 from typing import Any
 
@@ -52,20 +52,30 @@ FREQUENT: Mapping[str, tuple[str, ...]] = {
 """Commands whose services are looked for when the face begins: their first call is as quick as the others."""
 
 
+PER_SECOND = 32.0
+"""More messages of a jog than any page sends."""
+
+
 class PageJogs:
-    """Messages of jogs, counted from 1 for each axis and client: the PLC compares them so (JogTopics), and takes the 1
-    of a server that has begun again."""
+    """Messages of jogs, counted for each axis and client, as the PLC compares them (JogTopics).
+
+    It takes the 1 of a server that has begun again; where it has missed that, what follows is above all that the one
+    before has sent: a count that goes with the time.
+    """
 
     def __init__(self) -> None:
         self._publishers: dict[str, Publisher[msg.Jog]] = {}
-        self._numbers: defaultdict[tuple[str, str], count[int]] = defaultdict(partial(count, 1))
+        self._last: dict[tuple[str, str], int] = {}
 
     def add(self, axis: str, publisher: Publisher[msg.Jog]) -> None:
         self._publishers[axis] = publisher
 
     def send(self, axis: str, velocity: float, client: str) -> None:
         """mm/s, deg/s."""
-        message = msg.Jog(sequence=next(self._numbers[axis, client]), valid=True, velocity=velocity)
+        last = self._last.get((axis, client), 0)
+        number = max(last + 1, int(PER_SECOND * time.time()) % 2**32) if last else 1
+        self._last[axis, client] = number
+        message = msg.Jog(sequence=number, valid=True, velocity=velocity)
         message.header.frame_id = client
         self._publishers[axis].publish(message)
 

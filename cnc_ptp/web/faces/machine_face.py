@@ -28,7 +28,10 @@ from cnc_ptp.web.faces.description import describe_commands, describe_units
 from cnc_ptp.web.faces.face import Face, News, State, nothing
 from cnc_ptp.web.faces.scope import signals_of
 from cnc_ptp.web.faces.unit_fields import unit_states
-from cnc_ptp.web.numbers import STOPPED
+from cnc_ptp.web.numbers import NO_COMMAND_RIGHT, SESSION_ENDED, STOPPED
+
+NOT_SENT = frozenset({NO_COMMAND_RIGHT, SESSION_ENDED, STOPPED})
+"""Why a command that waited for its turn was dropped."""
 
 JOG_SOURCES = (OF_PAGES, OF_SERVICES, OF_TOPICS)
 """A jog of a page leaves on a topic; it is a command of pages, which are clients, all the same."""
@@ -120,7 +123,7 @@ class MachineFace(Face):
         try:
             reply = await self._in_turn(unit, command, given, user, require)
         except CncError as error:
-            end = f"no answer, P-ERR-{error.number}"
+            end = f"{'not sent' if error.number in NOT_SENT else 'no answer'}, P-ERR-{error.number}"
             self.note(round(self.time / self.cycle_time), f"{user}: {self.kinds[unit]} {unit}: {command}, {end}")
             raise
         self.note(reply.cycle, who_text(user, self.kinds[unit], unit, command, reply.error_id))

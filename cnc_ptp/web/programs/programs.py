@@ -106,6 +106,6 @@ def is_name(name: str) -> bool:
 def require_name(name: str) -> None:
     """Raises CncError 26240."""
     if not is_name(name):
-        form = "at most 80 ASCII letters, digits, blanks, _ . + -, at first a letter, digit or _, at last"
+        form = "up to 80 ASCII letters, digits, blanks and _ . + -, beginning with a letter, digit or _, ending in"
         reason = f"'{name[:80]}' is no name of a program: {form} {', '.join(SUFFIXES)}"
         raise CncError(BAD_PROGRAM_NAME, reason, "nothing was read or written")

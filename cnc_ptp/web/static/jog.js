@@ -81,7 +81,7 @@ export class Jogger {
   /** Jogs have no answer: the axis tells of a refusal as an event, the server as an error, which is shown in any case. */
   _refused({ type, text, remedy }) {
     const axis = REFUSED.exec(text)?.[1];
-    if (!axis || !this.app.store.holds) return;
+    if (!axis || !this._held.has(axis)) return; // that of somebody else
     this.stop(axis);
     if (type === "event") this.app.notices.show("error", text, remedy);
   }
