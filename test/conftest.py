@@ -74,13 +74,14 @@ def motion_of_recordings(
 
 
 def checked(recorded_motion: Any, request: pytest.FixtureRequest) -> Iterator[None]:
+    known = len(recorded_motion.folders)
     yield
     files = recorded_motion.new_files()
     if request.node.get_closest_marker("motion_unchecked") is None:
         found = recorded_motion.violations(files)
         assert not found, "\n".join(found)
     else:
-        recorded_motion.forget(getattr(request.node, "funcargs", {}).get("tmp_path"))
+        recorded_motion.forget(known)
 
 
 def pytest_configure(config: pytest.Config) -> None:

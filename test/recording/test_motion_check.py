@@ -335,10 +335,14 @@ def test_commands_of_other_versions_are_taken(inputs: MotionInputs) -> None:
     """A former name, an argument that is no longer known, a table with the name of its file."""
     rows = [
         (0, "x", "power", '{"on": true, "slowly": 1}', True),
-        (1, "x", "couple_cam", '{"master": "y", "table": [], "file": "cam.csv"}', True),
+        (1, "x", "couple_cam", '{"master": "y", "table": [], "file": "cam.csv", "factor": []}', True),
+        (2, "x", "stop", '{"deceleration": 1e9, "files": [1]}', True),
     ]
-    power, cam = orders_by_unit(inputs.machine, rows)["x"]
-    assert (power.arguments["enabled"], cam.command) == (True, "couple_cam")
+    power, cam, stop = orders_by_unit(inputs.machine, rows)["x"]
+    assert (power.arguments, cam.command) == ({"enabled": True}, "couple_cam")
+    assert "factor" not in cam.arguments and stop.arguments.keys() <= {"deceleration"}
+    channel = orders_by_unit(inputs.machine, [(0, "channel", "start", '{"files": [1]}', True)])["channel"]
+    assert channel[0].arguments == {}, "what no channel takes raises no limit"
 
 
 @pytest.mark.parametrize(

@@ -42,8 +42,7 @@ def test_every_folder_is_looked_at_in_the_end(motion, tmp_path):
 
 def test_what_is_forgotten_is_not_looked_at(motion, tmp_path):
     motion.folders = [folder_with(tmp_path, number) for number in range(2)]
-    motion.forget(motion.folders[0])
-    motion.forget(None)
+    motion.forget(0)
     assert [file.parent.name for file in motion.all_new_files()] == ["1"]
 
 

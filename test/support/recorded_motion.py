@@ -57,9 +57,9 @@ class RecordedMotion:
         """Those of all folders: at the end nobody writes any more."""
         return self._new_files(self.folders, ended=True)
 
-    def forget(self, folder: Path | None) -> None:
-        """Nobody looks at it again."""
-        self.folders = [each for each in self.folders if each != folder]
+    def forget(self, known: int) -> None:
+        """Nobody looks again at folders that came after the first `known`."""
+        del self.folders[known:]
 
     def _new_files(self, folders: list[Path], *, ended: bool) -> list[Path]:
         files = [path for folder in folders for path in sorted(folder.rglob("*.mcap")) if path.is_file()]
