@@ -42,8 +42,8 @@ def test_every_folder_is_looked_at_in_the_end(motion, tmp_path):
 
 def test_what_is_forgotten_is_not_looked_at(motion, tmp_path):
     motion.folders = [folder_with(tmp_path, number) for number in range(2)]
-    motion.forget(0)
-    assert [file.parent.name for file in motion.all_new_files()] == ["1"]
+    motion.forget(1)
+    assert [file.parent.name for file in motion.all_new_files()] == ["0"]
 
 
 def test_a_refusal_for_which_tests_have_no_reason_is_told(motion, tmp_path):
