@@ -38,6 +38,7 @@ def watch(build: subprocess.Popen[str], folder: Path, progress: Progress) -> Non
         progress.update(task, completed=compiled(folder, begun))
         with suppress(subprocess.TimeoutExpired, KeyboardInterrupt):
             build.wait(PERIOD)
+    progress.update(task, completed=compiled(folder, begun))
 
 
 def pass_on(build: subprocess.Popen[str], console: Console) -> None:
