@@ -212,11 +212,11 @@ class Session:
     # the end
 
     async def close(
-        self, code: int = WSCloseCode.GOING_AWAY, reason: str = "", *, patience: float = LONGEST_STALL
+        self, code: int = WSCloseCode.GOING_AWAY, reason: str = "", *, patience: float | None = None
     ) -> None:
-        """With a farewell; a page that does not even take that within `patience` (s) is cut off."""
+        """With a farewell; a page that does not even take that in `patience` (s, None: LONGEST_STALL) is cut off."""
         try:
-            async with asyncio.timeout(patience):
+            async with asyncio.timeout(LONGEST_STALL if patience is None else patience):
                 await self._socket.close(code=code, message=reason.encode()[:120])
         except TimeoutError:
             self.abort()

@@ -411,7 +411,7 @@ def test_the_table_counts_what_happened():
     made_too = [row(KILL, "does not end", "the run had not ended"), row(KILL, "", "the run did not start")]
     assert summary([*made, *made_too]) == (
         "4 faults (1 came after the end of their run): 2 stops, 1 runs that continued, 1 runs that did not end, "
-        "1 runs that did not begin, 3 problems"
+        "1 runs in which there was no fault, 3 problems"
     )
     cells = [list(column.cells) for column in table(made).columns]
     assert cells == [["ptp"], ["1 / 2"], ["0 / 0"], ["1 / 1"], ["3"], ["0.0"]]

@@ -60,7 +60,7 @@ class PageJogs:
     """Messages of jogs, counted for each axis and client, as the PLC compares them (JogTopics).
 
     It takes the 1 of a server that has begun again; where it has missed that, what follows is above all that the one
-    before has sent: a count that goes with the time.
+    before has sent: a count that goes with the time since the computer was started.
     """
 
     def __init__(self) -> None:
@@ -73,7 +73,7 @@ class PageJogs:
     def send(self, axis: str, velocity: float, client: str) -> None:
         """mm/s, deg/s."""
         last = self._last.get((axis, client), 0)
-        number = max(last + 1, int(PER_SECOND * time.time()) % 2**32) if last else 1
+        number = max(last + 1, int(PER_SECOND * time.monotonic()) % 2**31) if last else 1
         self._last[axis, client] = number
         message = msg.Jog(sequence=number, valid=True, velocity=velocity)
         message.header.frame_id = client
