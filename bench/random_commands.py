@@ -132,7 +132,7 @@ class CommandedMachine(CheckedMachine):
 
     def set_free(self) -> None:
         """As somebody would who wants to go on: nothing is held any more, errors are reset, the power is on."""
-        give = partial(self.give, looked_at=False)  # always the same: half of the time for a thousandth of what is new
+        give = partial(self.give, looked_at=False)  # they are always the same: not worth half of the time
         for unit, kind in self.kinds.items():
             commands = COMMANDS[kind]
             for control in CONTROL_UNITS.get(kind, ()):

@@ -151,8 +151,8 @@ class DriveWatch:
         that this holds also of one that has not been heard since this process was held up.
         """
         self._node.take_inputs()
-        moved = [unit for unit, block in self._newest.items() if unit in self._units and is_commanded(block)]
-        moved = [unit for unit in moved if not self._stops_alone(unit)]
+        left = [unit for unit in self._units if unit in self._newest and not self._stops_alone(unit)]
+        moved = [unit for unit in left if is_commanded(self._newest[unit])]
         for unit in self._watchdog.silent(moved, begun=True, most=LAST_PATIENCE):
             self._stop(unit, stamps)
             moved.remove(unit)

@@ -43,7 +43,7 @@ class DataRoutes:
     def __init__(self, hub: Hub, access: Access, words: Words) -> None:
         self._hub, self._access, self._words_of = hub, access, words
         self._snapshot_runs = asyncio.Lock()
-        self._snapshots = 0
+        self._snapshots = asyncio.Semaphore(MOST_SNAPSHOTS)
         self._rate = Rate(10.0, 50.0)
 
     def add_to(self, app: web.Application) -> None:
@@ -115,17 +115,14 @@ class DataRoutes:
         login = self._access.login_of(request)
         require_role("snapshot", login.user, login.role, "operator")
         seconds, until = (number(request.query.get(name, "0")) for name in ("seconds", "until"))
-        if self._snapshot_runs.locked() or self._snapshots >= MOST_SNAPSHOTS:
+        if self._snapshot_runs.locked() or self._snapshots.locked():
             raise CncError(TOO_MANY_MESSAGES, "snapshot: others are being made or sent", f"{NOTHING}; wait for them")
-        self._snapshots += 1
-        try:
+        async with self._snapshots:
             with tempfile.TemporaryDirectory(prefix="cnc_ptp-") as folder:
                 file = Path(folder) / "snapshot.mcap"
                 async with self._snapshot_runs:  # not while it is sent: who takes it slowly holds up nobody
                     first = await self._hub.require_face().snapshot(str(file), seconds, until)
                 return await sent(request, file, {"X-First-Cycle": str(first)})
-        finally:
-            self._snapshots -= 1
 
 
 async def sent(request: web.Request, file: Path, fields: Mapping[str, str]) -> web.StreamResponse:

@@ -1,6 +1,8 @@
 """What pages share: the command, the program folder, and what the machine tells all of them."""
 
 import asyncio
+import tempfile
+from functools import partial
 from types import SimpleNamespace
 
 import pytest
@@ -179,6 +181,52 @@ def test_a_snapshot_that_is_taken_slowly_keeps_nobody_from_another_one(monkeypat
         other = await here.client.get("/api/snapshot.mcap?seconds=7")
         assert (other.status, await other.read()) == (200, bytes(7))
         slow.close()
+
+    run(story)
+
+
+def test_snapshots_that_nobody_takes_are_few_and_are_given_up(monkeypatch, tmp_path):
+    monkeypatch.setattr("cnc_ptp.web.data_routes.MOST_SNAPSHOTS", 1)
+    monkeypatch.setattr("cnc_ptp.web.data_routes.LONGEST_STALL", 0.5)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+
+    async def snapshot(file, seconds, until):
+        with open(file, "wb") as stream:
+            stream.truncate(int(seconds))
+        return 0
+
+    async def story(here):
+        monkeypatch.setattr(here.hub.face, "snapshot", snapshot)
+        await here.token()
+        slow = await here.client.get(f"/api/snapshot.mcap?seconds={24 << 20}")  # and reads no more than its head
+        assert [*tmp_path.glob("cnc_ptp-*")] != []
+        answer = await here.client.get("/api/snapshot.mcap?seconds=7")
+        text = "snapshot: others are being made or sent; nothing was done; wait for them"
+        assert (answer.status, (await answer.json())["text"]) == (429, text)
+        async with asyncio.timeout(10.0):
+            while [*tmp_path.glob("cnc_ptp-*")]:
+                await asyncio.sleep(0.05)
+        answer = await here.client.get("/api/snapshot.mcap?seconds=7")
+        assert (answer.status, await answer.read()) == (200, bytes(7))
+        slow.close()
+
+    run(story)
+
+
+def test_at_the_end_of_the_server_all_jogs_end_before_any_farewell():
+    async def story(here):
+        for commands in (True, False):
+            await here.page(commands=commands)
+        order = []
+        for session in here.hub.sessions:
+            session.end_jogs = lambda: order.append("jogs")
+            session.close = partial(noted, order, session.close)
+        await here.hub.end()
+        assert order[:4] == ["jogs", "jogs", "close", "close"]
+
+    async def noted(order, close, **options):
+        order.append("close")
+        await close(**options)
 
     run(story)
 
