@@ -9,7 +9,8 @@ ROOT = Path(__file__).parents[1]
 CONFIG, SPINDLES = ROOT / "config", ROOT / "examples" / "spindles"
 RAMPS = "acceleration: 5000, deceleration: 5000, jerk: 50000"
 MILLING = "N20 G01 X120 Y60 Z-12 F6000\nN30 G02 X60 Y120 I-60 J0\nN40 G00 X0 Y0 Z0\nN50 G01 Y90 F3000\nN60 G00 Y0\n"
-PROGRAM = "%campaign\nN10 G90 G17 M03 S3000\n" + 8 * MILLING + "N70 M05\nN80 M30\n"
+ROUND = 3.0
+"""Seconds that a round of MILLING takes at least."""
 PTP = f"""
 - {{at: 0.05, to: x, do: move_absolute, target: 30000, velocity: 2000, {RAMPS}}}
 - {{at: 0.05, to: y, do: move_velocity, velocity: -500, {RAMPS}}}
@@ -34,6 +35,11 @@ THREAD_END = 20.0
 """Position of z, which it comes to from above, mm."""
 THREAD = f"G18 G90 M03 S400\nG00 X36 Z300\nG33 Z{THREAD_END:g} K1.5\nM30\n"
 TAPPING = "G63 Z-100 F500 S400\nM30\n"
+
+
+def milling(rounds: int) -> str:
+    """A program with so many rounds."""
+    return f"%campaign\nN10 G90 G17 M03 S3000\n{rounds * MILLING}N70 M05\nN80 M30\n"
 
 
 class Link(NamedTuple):
@@ -69,7 +75,7 @@ class Case(NamedTuple):
 
 
 CASES = (
-    Case("program", CONFIG / "mill.yaml", 18.0, PROGRAM),
+    Case("program", CONFIG / "mill.yaml", 18.0, milling(8)),
     Case("ptp", CONFIG / "ptp.yaml", 10.0, scenario=PTP),
     Case("coupled", CONFIG / "ptp.yaml", 10.0, scenario=COUPLED, links=(Link("x", "y", 0.75), Link("y", "z", -0.5))),
     Case("gantry", CONFIG / "gantry.yaml", 10.0, scenario=GANTRY, links=(Link("x", "y", 1.0),)),

@@ -28,12 +28,13 @@ def named(folder: Path, *, minutes: float, sets_clock: bool) -> Iterator[tuple[s
         yield "wall clock", partial(load.wall_clock_set, folder, domain)
     yield "disk full", partial(disks.full_disk, folder, domain)
     yield "slow disk", partial(disks.slow_disk, folder, domain)
-    yield "subscribers", partial(load.company, "subscribers", load.SUBSCRIBERS, folder, domain)
-    yield "foreign nodes", partial(load.company, "foreign nodes", load.FOREIGN_NODES, folder, domain)
-    yield "late joiner", partial(load.company, "late", 1, folder, domain)
+    for what, (number, each) in load.COMPANY_OF.items():
+        yield what, partial(load.company, what, number, each, folder, domain)
     yield "floods", partial(load.floods, folder, domain)
     yield "two machines", partial(load.two_machines, folder, domain)
     if minutes:
+        number, _ = load.COMPANY_OF[load.FOREIGN]
+        yield "foreign participants", partial(load.company, load.FOREIGN, number, 1, folder, domain)
         yield "soak", partial(load.soak, minutes, folder, domain)
 
 

@@ -11,7 +11,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, field
-from math import ceil, isnan
+from math import ceil, isnan, nan
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +20,7 @@ import psutil
 
 from bench.lateness import lateness_p99, told
 from campaign import motion
-from campaign.cases import CASES, MILLING, Case
+from campaign.cases import CASES, ROUND, Case, milling
 from campaign.graph import Graph, free_domain
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import Severity
@@ -34,15 +34,17 @@ FROZEN = 3.0
 CLOCK_STEP = 3600.0
 """Seconds by which the wall clock is set."""
 WATCHDOG = 26101
-ROUND = 3.0
-"""Seconds that a round of the program takes at least."""
-SUBSCRIBERS, FOREIGN_NODES = 200, 50
+SUBSCRIBERS, FOREIGN, LATE = "subscribers", "foreign nodes", "late joiner"
+COMPANY_OF = {SUBSCRIBERS: (200, 20), FOREIGN: (50, 5), LATE: (1, 1)}
+"""How many, and how many of them are a participant of DDS."""
+COMING = 900.0
+"""Seconds at most until all newcomers are there: on two processors the machine, which comes first, leaves little."""
 MOVING_TOPICS = 20
 """Floods of topics in which the program runs on, at least."""
 FLOOD = 0.2
 """Seconds for each topic and each service."""
 SETTLED, SETTLING = 0.2, 300.0
-"""Part of a soak, and seconds at most, after which memory must not grow any more."""
+"""Seconds of a soak after which memory must not grow any more; part of one that is shorter."""
 SAMPLING = 5.0
 """Seconds from one look at the processes to the next, in a soak of a minute or more."""
 GROWTH_MB = 1.0
@@ -70,9 +72,10 @@ class LoadRow:
 
 
 @contextmanager
-def started(name: str, folder: Path, domain: int, *options: str) -> Iterator[Graph]:
-    """A run of a case that has begun."""
+def started(name: str, folder: Path, domain: int, *options: str, program: str = "") -> Iterator[Graph]:
+    """A run of a case that has begun; `program`: another text than that of the case."""
     case = case_of(name)
+    case = case._replace(program=program or case.program)
     place = folder / f"{name}_{domain}"
     place.mkdir(parents=True, exist_ok=True)
     graph = Graph([*case.words(place), *options], place / "run.mcap", domain=domain)
@@ -214,27 +217,33 @@ from std_msgs.msg import String
 from cnc_ptp import msg
 from cnc_ptp.nodes import process
 from cnc_ptp.nodes.topics import BLOCKS, EVENTS
-what, number, seconds = sys.argv[1], int(sys.argv[2]), float(sys.argv[3])
-count, executors, kept = 0, [], []
+what, number, each, seconds = sys.argv[1], int(sys.argv[2]), int(sys.argv[3]), float(sys.argv[4])
+began, count, executors, kept = time.monotonic(), 0, [], []
 def heard(message):
     global count
     count += 1
-def newcomer(name):
+def participant():
     context = Context()
     process.initialise(context)
-    node = rclpy.create_node(name, context=context, enable_rosout=False, start_parameter_services=False)
     executors.append(process.EventsExecutor(context=context))
-    executors[-1].add_node(node)
+def newcomer(n):
+    executor = executors[-1]
+    options = {"context": executor.context, "enable_rosout": False, "start_parameter_services": False}
+    node = rclpy.create_node(f"newcomer{n}", **options)
+    executor.add_node(node)
     return node
-if what == "subscribers":
-    for n in range(number):
-        node = newcomer(f"crowd{n}") if n % 20 == 0 else node
+for n in range(number):
+    if n % each == 0:
+        participant()
+    if what != "subscribers" or n % each == 0:
+        node = newcomer(n)
+    if what == "subscribers":
         node.create_subscription(msg.AxisBlock, ["x", "y", "z"][n % 3] + "/block", heard, BLOCKS)
-elif what == "foreign nodes":
-    kept = [newcomer(f"foreign{n}").create_publisher(String, f"foreign{n}/text", 10) for n in range(number)]
-else:
-    newcomer("late").create_subscription(msg.CommandRecord, "commands", heard, EVENTS)
-print("there", flush=True)
+    elif what == "late joiner":
+        node.create_subscription(msg.CommandRecord, "commands", heard, EVENTS)
+    else:
+        kept.append(node.create_publisher(String, f"foreign{n}/text", 10))
+print(round(time.monotonic() - began, 1), flush=True)
 end = time.monotonic() + seconds
 while time.monotonic() < end:
     for executor in executors:
@@ -244,18 +253,20 @@ for executor in executors:
     executor.shutdown()
     executor.context.try_shutdown()
 """
-"""A program of its own on the domain of the machine. Each newcomer is a participant of DDS, 20 subscribers are one."""
+"""A program of its own on the domain of the machine: so many nodes `each` are a participant of DDS, or so many
+subscribers one node."""
 
 
-def company(what: str, number: int, folder: Path, domain: int) -> LoadRow:
-    """Others on the same domain, who come while the machine runs."""
-    row = LoadRow(f"{number} {what}")
-    with started("program", folder, domain) as graph:
-        words = [sys.executable, "-c", COMPANY, what, str(number), str(SECONDS)]
+def company(what: str, number: int, each: int, folder: Path, domain: int) -> LoadRow:
+    """Others on the same domain, who come while the machine runs; so many `each` are a participant of DDS."""
+    row = LoadRow(f"{number} {what}, {ceil(number / each)} participants")
+    with started("program", folder, domain, program=milling(ceil(COMING / ROUND))) as graph:
+        words = [sys.executable, "-c", COMPANY, what, str(number), str(each), str(SECONDS)]
         environment = os.environ | {"ROS_DOMAIN_ID": str(domain)}
-        done = subprocess.run(words, env=environment, capture_output=True, text=True, timeout=120, check=False)
-        row.figures["messages that they got"] = float(done.stdout.split()[-1]) if done.returncode == 0 else -1.0
-        if done.returncode or (what != "foreign nodes" and row.figures["messages that they got"] < 1.0):
+        done = subprocess.run(words, env=environment, capture_output=True, text=True, timeout=COMING, check=False)
+        coming, got = map(float, done.stdout.split()) if done.returncode == 0 else (nan, nan)
+        row.figures |= {"seconds until they were there": coming, "messages that they got": got}
+        if done.returncode or (what != FOREIGN and got < 1.0):
             row.problems.append(f"they got nothing: {done.stdout} {done.stderr[-300:]}")
         finished(row, graph, "program")
     return row
@@ -284,12 +295,13 @@ def floods(folder: Path, domain: int) -> LoadRow:
 def two_machines(folder: Path, domain: int) -> LoadRow:
     """The same program on two domains at once: equal to the bit, as far as both have come."""
     row = LoadRow("two machines on two domains")
+    program = milling(ceil(COMING / ROUND))  # the first one runs while the second one starts
     with (
-        started("tapping", folder, domain) as first,
-        started("tapping", folder, free_domain(domain + 1)) as second,
+        started("program", folder, domain, program=program) as first,
+        started("program", folder, free_domain(domain + 1), program=program) as second,
     ):
         time.sleep(SECONDS)
-        both = [finished(row, graph, "tapping") for graph in (first, second)]
+        both = [finished(row, graph, "program") for graph in (first, second)]
     cycles = int(0.5 * SECONDS * 1000.0)
     for topic, rows in both[0].states.items():
         other = both[1].states[topic]
@@ -304,11 +316,8 @@ def soak(minutes: float, folder: Path, domain: int) -> LoadRow:
     row = LoadRow(f"soak of {minutes:g} minutes")
     place = folder / "soak"
     place.mkdir(parents=True, exist_ok=True)
-    case = case_of("program")
-    program = place / "soak.nc"
-    rounds = ceil(60.0 * minutes / ROUND) + 1
-    program.write_text(f"%soak\nN10 G90 G17 M03 S3000\n{MILLING * rounds}M30\n")
-    graph = Graph([str(case.machine), "--program", str(program)], place / "run.mcap", domain=domain)
+    case = case_of("program")._replace(program=milling(ceil(60.0 * minutes / ROUND) + 1))
+    graph = Graph(case.words(place), place / "run.mcap", domain=domain)
     samples: list[dict[str, tuple[float, int, int]]] = []
     try:
         if not graph.wait_for_start():
@@ -333,15 +342,16 @@ def figures_of(process: psutil.Process) -> tuple[float, int, int]:
 
 
 def grown(row: LoadRow, samples: list[dict[str, tuple[float, int, int]]]) -> None:
-    """The growth from the end of the first five minutes, or fifth, on."""
+    """The growth after the first five minutes; that of the memory in a shorter soak is not judged."""
     if not samples:
         row.problems.append("no process was looked at")
         return
-    settled = samples[min(int(len(samples) * SETTLED), int(SETTLING / SAMPLING)) :]
+    long = len(samples) > int(SETTLING / SAMPLING)
+    settled = samples[int(SETTLING / SAMPLING) if long else int(len(samples) * SETTLED) :]
     for name in settled[0]:
         memory, handles, threads = (settled[-1][name][n] - settled[0][name][n] for n in range(3))
         row.figures[f"{name}: MB more"] = round(memory, 2)
-        if memory > GROWTH_MB:
+        if long and memory > GROWTH_MB:
             row.problems.append(f"{name} has grown by {memory:.2f} MB")
         if handles > 0 or threads > 0:
             row.problems.append(f"{name} has {handles} more file handles, {threads} more threads")

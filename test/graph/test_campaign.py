@@ -51,17 +51,16 @@ def test_floods_of_each_topic_and_service(tmp_path: Path, ros_domain: int) -> No
 
 
 @pytest.mark.long
+@pytest.mark.timeout(load.COMING + 120.0)
 @pytest.mark.parametrize(
     "condition",
     [
         load.busy_processors,
-        partial(load.company, "subscribers", load.SUBSCRIBERS),
-        partial(load.company, "foreign nodes", load.FOREIGN_NODES),
-        partial(load.company, "late", 1),
+        *(partial(load.company, what, *numbers) for what, numbers in load.COMPANY_OF.items()),
         load.two_machines,
         partial(load.soak, 0.5),
     ],
-    ids=("busy processors", "subscribers", "foreign nodes", "a late one", "two machines", "half a minute"),
+    ids=("busy processors", *load.COMPANY_OF, "two machines", "half a minute"),
 )
 def test_a_condition_that_a_machine_does_not_notice(
     condition: Callable[[Path, int], LoadRow], tmp_path: Path, ros_domain: int
