@@ -50,6 +50,31 @@ def test_a_jog_ends_however_its_key_is_lost(look, fake, how):
     page.mouse.up()
 
 
+def test_the_button_that_was_pressed_before_ends_no_jog_of_the_next_one(look, fake):
+    page = look(command=True)
+    for name, ends in (("Jog X +", 1), ("Jog X −", 2)):  # the first one has the focus until the second one is pressed
+        begun = len(jogs(fake))
+        press_jog(page, name)
+        eventually(page, lambda begun=begun: len(jogs(fake)) >= begun + 4)
+        page.mouse.up()
+        eventually(page, lambda ends=ends: len([m for m in fake.received if m["type"] == "jog_stop"]) == ends)
+    page.wait_for_timeout(200)
+    assert len([m for m in fake.received if m["type"] == "jog_stop"]) == 2
+
+
+def test_a_key_beside_the_pointer_does_not_keep_a_jog(look, fake):
+    page = look(command=True)
+    press_jog(page)
+    eventually(page, lambda: jogs(fake))
+    page.keyboard.down("Enter")
+    page.mouse.up()
+    eventually(page, lambda: fake.has_received(type="jog_stop"))
+    sent = len(jogs(fake))
+    page.wait_for_timeout(200)
+    page.keyboard.up("Enter")
+    assert len(jogs(fake)) == sent
+
+
 def test_jog_messages_come_every_50_ms(look, fake):
     page = look(command=True)
     press_jog(page, "Jog Y +")

@@ -27,24 +27,25 @@ export class Jogger {
     return () => this._listeners.delete(listener);
   }
 
-  /** Begins a jog (mm/s, deg/s). Without the command nothing is sent. */
+  /** Begins a jog (mm/s, deg/s), and gives it, or null. Without the command nothing is sent. */
   start(axis, velocity) {
     const { store, notices } = this.app;
-    if (this._held.has(axis) || velocity === 0 || document.hidden) return;
+    if (this._held.has(axis) || velocity === 0 || document.hidden) return null;
     if (!store.holds) {
       notices.show("warning", "This page does not hold the command.", "Take the command first.");
-      return;
+      return null;
     }
     const { time } = this.app.roundTrip;
     if (time > LONGEST_FOR_JOGS) {
       notices.show("warning", slow(time), "Jog from a computer that is nearer to the machine, or where less runs.");
-      return;
+      return null;
     }
     const jog = { velocity, sequence: 0, sent: performance.now(), timer: 0 };
     jog.timer = setInterval(() => this._beat(axis, jog), PERIOD); // before the first message, whose failure ends it
     this._held.set(axis, jog);
     this._tell(axis, velocity);
     this._beat(axis, jog);
+    return jog;
   }
 
   _beat(axis, jog) {
@@ -98,8 +99,12 @@ export class Jogger {
 
   /** Makes a button one that is held; `velocity` is asked when it is pressed. */
   bind(element, axis, velocity) {
-    const begin = () => this.start(axis, velocity());
-    const end = () => this.stop(axis);
+    let jog = null;
+    const begin = () => {
+      jog = this.start(axis, velocity()) ?? jog; // a second press (a key beside the pointer) begins nothing
+    };
+    // not that of another button: when one is pressed, the one that was pressed before loses the focus
+    const end = () => jog && this._held.get(axis) === jog && this.stop(axis);
     element.addEventListener("pointerdown", (event) => {
       if (event.button !== 0) return;
       element.setPointerCapture(event.pointerId);
