@@ -65,11 +65,11 @@ class PageMessages:
     def _command(self, message: Message) -> Answering:
         unit, command = field(message, "unit", "text"), field(message, "command", "text")
         arguments = field(message, "arguments", "object", {})
-        self._require_command(unit, command, arguments)
-        return self._ask(message, unit, command, arguments)
+        what = self._require_command(unit, command, arguments)
+        return self._ask(message, unit, command, arguments, what)
 
-    def _require_command(self, unit: str, command: str, arguments: dict[str, Any]) -> None:
-        """Raises CncError 26111, 26235, 26236, 26249."""
+    def _require_command(self, unit: str, command: str, arguments: dict[str, Any]) -> str:
+        """What is to be done, in words. Raises CncError 26111, 26235, 26236, 26249."""
         face = self._hub.require_face()
         kind = face.kinds.get(unit)
         if kind is None:
@@ -83,10 +83,10 @@ class PageMessages:
         except CncError as error:
             self._hub.note(f"{self._session.user}: {what}, P-ERR-{error.number}")
             raise
+        return what
 
-    async def _ask(self, message: Message, unit: str, command: str, arguments: dict[str, Any]) -> Message:
-        face = self._hub.require_face()
-        require = partial(self._require_still, f"{face.kinds[unit]} {unit}: {command}")
+    async def _ask(self, message: Message, unit: str, command: str, arguments: dict[str, Any], what: str) -> Message:
+        require, face = partial(self._require_still, what), self._hub.require_face()
         reply = await face.ask(unit, command, arguments, user=self._session.user, require=require)
         return answer(message, cycle=reply.cycle, job=reply.job, warning=reply.message, values=dict(reply.values))
 
@@ -112,7 +112,7 @@ class PageMessages:
             arguments["dialect"] = dialect
         if text is not None:
             arguments["text"] = text
-        return self._ask(message, channel, "load", arguments)
+        return self._ask(message, channel, "load", arguments, what)
 
     def _offsets(self, message: Message) -> None:
         """The zero offsets of a channel."""

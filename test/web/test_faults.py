@@ -16,6 +16,7 @@ from cnc_ptp.nodes.client.calls_in_flight import Call, CallsInFlight
 from cnc_ptp.web.access.guard import Names
 from cnc_ptp.web.access.users import remove
 from cnc_ptp.web.faces.machine_face import offline_face
+from cnc_ptp.web.page_messages import PageMessages
 
 
 def run(story, **options):
@@ -47,6 +48,17 @@ async def until(condition):
             await asyncio.sleep(0.01)
 
     await asyncio.wait_for(wait(), PATIENCE)
+
+
+def test_a_command_whose_unit_is_gone_when_it_is_its_turn_is_refused():
+    machine = offline_face(MILL, stands=True)
+    faces = iter([SimpleNamespace(kinds={"q": "axis"}), machine])
+    right = SimpleNamespace(require=lambda *_: None)
+    hub = SimpleNamespace(require_face=lambda: next(faces), right=right, note=print, tasks=None)
+    page = SimpleNamespace(hub=hub, user="anna", role="operator")
+    asked = PageMessages(page).handle({"type": "command", "id": 1, "unit": "q", "command": "halt"})
+    with pytest.raises(CncError, match=r"P-ERR-26111 the machine has no unit 'q'"):
+        asyncio.run(asked)
 
 
 def test_a_page_closes_while_its_command_is_on_its_way(monkeypatch):
