@@ -546,6 +546,8 @@ def test_the_lateness_of_a_soak_may_not_grow(tmp_path, first, last, problems):
     late = [first] * 4 + [1.0] * 8 + [last] * 4
     write_lateness(tmp_path / "run.mcap", [{"x": 1000.0 * each, "y": 500.0} for each in late])
     row = load.LoadRow("soak")
+    load.later(row, tmp_path / "run.mcap", judged=False)
+    assert row.problems == []
     load.later(row, tmp_path / "run.mcap")
     assert row.problems == problems
     assert row.figures == {
