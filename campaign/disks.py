@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from campaign import motion
-from campaign.load import LoadRow, finished, started
+from campaign.load import LoadRow, NotTriedError, condition, finished, started
 from cnc_ptp.recording.reader import read_recording
 
 SMALL_KB = 600
@@ -24,20 +24,16 @@ BETWEEN = 1.0
 DISK_FULL = 26015
 
 
-class NoDiskError(Exception):
-    """No file system can be mounted here."""
-
-
 def call(*words: str) -> None:
-    """Raises NoDiskError."""
+    """Raises NotTriedError where no file system can be mounted."""
     done = subprocess.run(words, capture_output=True, text=True, check=False)
     if done.returncode:
-        raise NoDiskError(f"{' '.join(words[:2])}: {done.stderr.strip()}")
+        raise NotTriedError(f"{' '.join(words[:2])}: {done.stderr.strip()}")
 
 
 @contextmanager
 def mounted(folder: Path, *words: str) -> Iterator[Path]:
-    """Raises NoDiskError."""
+    """Raises NotTriedError."""
     folder.mkdir(parents=True, exist_ok=True)
     call("mount", *words, str(folder))
     try:
@@ -46,9 +42,9 @@ def mounted(folder: Path, *words: str) -> Iterator[Path]:
         subprocess.run(["umount", "-l", str(folder)], check=False)
 
 
-def full_disk(folder: Path, domain: int) -> LoadRow:
+@condition("disk full")
+def full_disk(row: LoadRow, folder: Path, domain: int) -> None:
     """The disk of the recording gets full on the way."""
-    row = LoadRow("disk full")
     with mounted(folder / "small", "-t", "tmpfs", "-o", f"size={SMALL_KB}k", "tmpfs") as disk:
         with started("program", disk, domain) as graph:
             size = -1
@@ -65,12 +61,11 @@ def full_disk(folder: Path, domain: int) -> LoadRow:
         recorded = read_recording(graph.recording)
         row.figures |= {"cycles": recorded.last_cycle + 1, "kB": graph.recording.stat().st_size / 1e3}
         row.problems += motion.violations(graph.recording)
-    return row
 
 
-def slow_disk(folder: Path, domain: int) -> LoadRow:
+@condition(f"disk that stalls {STALLS} times for {STALL:g} s")
+def slow_disk(row: LoadRow, folder: Path, domain: int) -> None:
     """The disk of the recording writes nothing for some seconds, several times."""
-    row = LoadRow(f"disk that stalls {STALLS} times for {STALL:g} s")
     image = folder / "disk.ext4"
     folder.mkdir(parents=True, exist_ok=True)
     call("truncate", "-s", f"{LARGE_MB}M", str(image))
@@ -81,7 +76,6 @@ def slow_disk(folder: Path, domain: int) -> LoadRow:
                 time.sleep(STALL)
             time.sleep(BETWEEN)
         finished(row, graph, "program")
-    return row
 
 
 @contextmanager

@@ -8,12 +8,13 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, field
+from functools import wraps
 from math import ceil, isnan, nan
 from pathlib import Path
-from typing import Any
+from typing import Any, Concatenate, ParamSpec
 
 import numpy as np
 import psutil
@@ -71,6 +72,33 @@ class LoadRow:
         return asdict(self) | {"good": self.good}
 
 
+class NotTriedError(Exception):
+    """A condition that cannot be made here."""
+
+
+P = ParamSpec("P")
+
+
+def condition(name: str) -> Callable[[Callable[Concatenate[LoadRow, P], None]], Callable[P, LoadRow]]:
+    """Makes a function that gives a row of this name from one that fills it; an error loses nothing found before."""
+
+    def of(fill: Callable[Concatenate[LoadRow, P], None]) -> Callable[P, LoadRow]:
+        @wraps(fill)
+        def attempted(*arguments: P.args, **named: P.kwargs) -> LoadRow:
+            row = LoadRow(name)
+            try:
+                fill(row, *arguments, **named)
+            except NotTriedError as error:
+                row.untried = str(error)
+            except Exception as error:  # whatever it is, the conditions behind it are tried
+                row.problems.append(f"not looked at to the end: {error!r}")
+            return row
+
+        return attempted
+
+    return of
+
+
 @contextmanager
 def started(name: str, folder: Path, domain: int, *options: str, program: str = "") -> Iterator[Graph]:
     """A run of a case that has begun; `program`: another text than that of the case."""
@@ -126,9 +154,9 @@ def checked_motion(graph: Graph, name: str, recorded: Recorded) -> list[str]:
     return [*motion.problems(recorded, machine, ended=True), *motion.violations(graph.recording)]
 
 
-def busy_processors(folder: Path, domain: int) -> LoadRow:
+@condition("all processors busy")
+def busy_processors(row: LoadRow, folder: Path, domain: int) -> None:
     """Twice as many programs as processors that never rest."""
-    row = LoadRow("all processors busy")
     burners = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(2 * (os.cpu_count() or 1))]
     try:
         with started("program", folder, domain) as graph:
@@ -138,7 +166,6 @@ def busy_processors(folder: Path, domain: int) -> LoadRow:
         for burner in burners:
             burner.kill()
             burner.wait()
-    return row
 
 
 MEMORY = """
@@ -151,16 +178,15 @@ SPARED = 1.0
 """GiB that it leaves."""
 
 
-def memory_pressure(folder: Path, domain: int) -> LoadRow:
+@condition("memory pressure")
+def memory_pressure(row: LoadRow, folder: Path, domain: int) -> None:
     """A program takes all free memory but a little, and gives it back."""
-    row = LoadRow("memory pressure")
     with started("program", folder, domain) as graph:
         free = max(64.0, psutil.virtual_memory().available / 2**20 - 1024.0 * SPARED)
         row.figures["MiB taken"] = float(int(free))
         done = subprocess.run([sys.executable, "-c", MEMORY, str(int(free)), "3.0"], check=False)
         row.problems += [f"it could not be taken: status {done.returncode}"] if done.returncode else []
         finished(row, graph, "program")
-    return row
 
 
 @contextmanager
@@ -174,9 +200,9 @@ def clock_set(by: float) -> Iterator[None]:
         time.clock_settime(time.CLOCK_REALTIME, began + time.monotonic() - passed)
 
 
-def wall_clock_set(folder: Path, domain: int) -> LoadRow:
+@condition(f"wall clock set by {CLOCK_STEP:g} s")
+def wall_clock_set(row: LoadRow, folder: Path, domain: int) -> None:
     """An hour back, then forth; then, an hour back, the clock of the machine is killed: units notice it themselves."""
-    row = LoadRow(f"wall clock set by {CLOCK_STEP:g} s")
     with started("program", folder / "set", domain) as graph:
         for by in (-CLOCK_STEP, CLOCK_STEP):
             with clock_set(by):
@@ -192,12 +218,11 @@ def wall_clock_set(folder: Path, domain: int) -> LoadRow:
     silent = {event.source for event in recorded.events if event.error_id == WATCHDOG}
     if missing := {"x", "y", "z"} - silent:
         row.problems.append(f"no watchdog of {', '.join(sorted(missing))}")
-    return row
 
 
-def suspended(folder: Path, domain: int) -> LoadRow:
+@condition(f"whole graph suspended for {FROZEN:g} s")
+def suspended(row: LoadRow, folder: Path, domain: int) -> None:
     """All processes of a graph stand still together, as those of a suspended computer."""
-    row = LoadRow(f"whole graph suspended for {FROZEN:g} s")
     with started("program", folder, domain) as graph:
         time.sleep(2.0)
         family = graph.processes.values()
@@ -207,7 +232,6 @@ def suspended(folder: Path, domain: int) -> LoadRow:
                     process.send_signal(number)
             time.sleep(wait)
         finished(row, graph, "program")
-    return row
 
 
 COMPANY = """
@@ -257,9 +281,10 @@ for executor in executors:
 subscribers one node."""
 
 
-def company(what: str, number: int, each: int, folder: Path, domain: int) -> LoadRow:
+@condition("company")
+def company(row: LoadRow, what: str, number: int, each: int, folder: Path, domain: int) -> None:
     """Others on the same domain, who come while the machine runs; so many `each` are a participant of DDS."""
-    row = LoadRow(f"{number} {what}, {ceil(number / each)} participants")
+    row.name = f"{number} {what}, {ceil(number / each)} participants"
     with started("program", folder, domain, program=milling(ceil(COMING / ROUND))) as graph:
         words = [sys.executable, "-c", COMPANY, what, str(number), str(each), str(SECONDS)]
         environment = os.environ | {"ROS_DOMAIN_ID": str(domain)}
@@ -269,12 +294,11 @@ def company(what: str, number: int, each: int, folder: Path, domain: int) -> Loa
         if done.returncode or (what != FOREIGN and got < 1.0):
             row.problems.append(f"they got nothing: {done.stdout} {done.stderr[-300:]}")
         finished(row, graph, "program")
-    return row
 
 
-def floods(folder: Path, domain: int) -> LoadRow:
+@condition("floods of each topic and service")
+def floods(row: LoadRow, folder: Path, domain: int) -> None:
     """1,000 messages a second on each topic that somebody may write, and calls of each service."""
-    row = LoadRow("floods of each topic and service")
     with started("program", folder, domain, "--stay") as graph:  # what comes may end the program
         machine = str(case_of("program").machine)
         words = [sys.executable, "-m", "campaign.flood", machine, str(FLOOD)]
@@ -289,12 +313,11 @@ def floods(folder: Path, domain: int) -> LoadRow:
     row.figures["cycles in motion"] = moved
     if moved < 1000.0 * FLOOD * MOVING_TOPICS:
         row.problems.append(f"x has moved in {moved} cycles only: it was no flood of a running machine")
-    return row
 
 
-def two_machines(folder: Path, domain: int) -> LoadRow:
+@condition("two machines on two domains")
+def two_machines(row: LoadRow, folder: Path, domain: int) -> None:
     """The same program on two domains at once: equal to the bit, as far as both have come."""
-    row = LoadRow("two machines on two domains")
     program = milling(ceil(COMING / ROUND))  # the first one runs while the second one starts
     with (
         started("program", folder, domain, program=program) as first,
@@ -308,12 +331,12 @@ def two_machines(folder: Path, domain: int) -> LoadRow:
         for name in rows.dtype.names or ():
             if not name.startswith("header") and not np.array_equal(rows[name][:cycles], other[name][:cycles]):
                 row.problems.append(f"{topic} {name} differs")
-    return row
 
 
-def soak(minutes: float, folder: Path, domain: int) -> LoadRow:
+@condition("soak")
+def soak(row: LoadRow, minutes: float, folder: Path, domain: int) -> None:
     """A machine that runs for long: memory, handles, threads of each process, lateness of the blocks."""
-    row = LoadRow(f"soak of {minutes:g} minutes")
+    row.name = f"soak of {minutes:g} minutes"
     place = folder / "soak"
     place.mkdir(parents=True, exist_ok=True)
     case = case_of("program")._replace(program=milling(ceil(60.0 * minutes / ROUND) + 1))
@@ -322,7 +345,7 @@ def soak(minutes: float, folder: Path, domain: int) -> LoadRow:
     try:
         if not graph.wait_for_start():
             row.problems.append(f"the run did not start: {graph.output[-500:]}")
-            return row
+            return
         end = time.monotonic() + 60.0 * minutes
         while time.monotonic() < end and graph.running:
             time.sleep(min(SAMPLING, 6.0 * minutes))
@@ -333,7 +356,6 @@ def soak(minutes: float, folder: Path, domain: int) -> LoadRow:
         graph.end()
     grown(row, samples)
     later(row, graph.recording, judged=60.0 * minutes > SETTLING)
-    return row
 
 
 def figures_of(process: psutil.Process) -> tuple[float, int, int]:

@@ -17,8 +17,7 @@ from bench.fuzzing.kinds import KINDS
 from campaign import __main__ as command
 from campaign import disks, kills, load, motion, witness
 from campaign.cases import Link
-from campaign.conditions import attempted, conditions
-from campaign.disks import NoDiskError
+from campaign.conditions import conditions
 from campaign.graph import Graph, size_of
 from campaign.kills import HOLD, KILL, TERM, Fault, Row
 from campaign.load import case_of
@@ -565,10 +564,11 @@ def test_a_soak_in_which_nobody_tells_its_lateness(tmp_path):
 
 
 def test_a_disk_that_cannot_be_mounted_is_neither_good_nor_bad():
-    def none():
-        raise NoDiskError("mount -t: only root can do that")
+    @load.condition("slow disk")
+    def none(_row):
+        raise load.NotTriedError("mount -t: only root can do that")
 
-    row = attempted("slow disk", none)
+    row = none()
     assert (row.name, row.good) == ("slow disk", None)
     assert row.as_json()["untried"] == "mount -t: only root can do that"
 
@@ -583,17 +583,25 @@ FAILURES = [
 
 @pytest.mark.parametrize("error", FAILURES, ids=repr)
 def test_a_condition_that_fails_is_a_row_and_the_next_one_comes(monkeypatch, tmp_path, error):
-    def fail(*_):
+    def fail(*_, **__):
         raise error
 
-    for name in ("memory_pressure", "suspended", "wall_clock_set", "company", "floods", "two_machines", "soak"):
-        monkeypatch.setattr(load, name, fail)
-    for name in ("full_disk", "slow_disk"):
-        monkeypatch.setattr(disks, name, fail)
-    monkeypatch.setattr(load, "busy_processors", lambda *_: load.LoadRow("busy"))
-    first, *others = conditions(tmp_path, minutes=1.0, sets_clock=True)
-    assert first.good and len(others) == 12
-    assert all(each.problems == [f"not looked at to the end: {error!r}"] and each.good is False for each in others)
+    monkeypatch.setattr(load, "started", fail)
+    monkeypatch.setattr(load, "Graph", fail)
+    monkeypatch.setattr(disks, "mounted", fail)
+    monkeypatch.setattr(disks, "call", lambda *_: None)
+    rows = [*conditions(tmp_path, minutes=1.0, sets_clock=True)]
+    assert len({row.name for row in rows}) == 13
+    assert all(each.problems == [f"not looked at to the end: {error!r}"] and each.good is False for each in rows)
+
+
+def test_an_error_does_not_lose_what_was_found_before_it():
+    @load.condition("made")
+    def made(row, text):
+        row.problems.append(text)
+        raise OSError("gone")
+
+    assert made("x: still moves").problems == ["x: still moves", "not looked at to the end: OSError('gone')"]
 
 
 def test_a_motion_that_cannot_be_checked_is_a_problem(monkeypatch, tmp_path):
