@@ -61,7 +61,7 @@ def test_a_task_is_cancelled(machine):
             page = await here.page()
             task = (await page.ask("identify", axis="x", what="dynamics"))["task"]
             progress = await page.wait_for("progress")
-            assert progress["text"] == "identify dynamics x runs"
+            assert progress["text"] == "identify runs"
             assert (await page.ask("cancel_task", task=task))["ok"]
             for what in (f"task {task} begun: identify dynamics x ", f"task {task} cancelled"):
                 told = await page.wait_for("event", lambda event, what=what: what in event["text"])

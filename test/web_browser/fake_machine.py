@@ -56,8 +56,11 @@ def axis(name: str) -> dict[str, Any]:
     }
 
 
-def argument(kind: str, required: bool = False, choices: tuple[str, ...] = ()) -> dict[str, Any]:
-    return {"kind": kind, "required": required, "choices": list(choices)}
+def argument(
+    kind: str, required: bool = False, choices: tuple[str, ...] = (), *, unit: str = "", left_out: str = ""
+) -> dict[str, Any]:
+    texts = {"unit": unit, "meaning": "largest value", "left_out": left_out}
+    return {"kind": kind, "required": required, "choices": list(choices), **texts}
 
 
 COMMANDS = {
@@ -65,10 +68,10 @@ COMMANDS = {
         "power": {"enabled": argument("switch", True)},
         "reset": {},
         "move_absolute": {
-            "target": argument("number", True),
-            "velocity": argument("number"),
-            "acceleration": argument("number"),
-            "jerk": argument("number"),
+            "target": argument("number", True, unit="mm, °"),
+            "velocity": argument("number", unit="mm/s, °/s", left_out="P-AXIS-00212"),
+            "acceleration": argument("number", unit="mm/s², °/s²", left_out="P-AXIS-00001"),
+            "jerk": argument("number", unit="mm/s³, °/s³"),
         },
         "halt": {},
         "couple": {"factor": argument("number", True), "master": argument("text", True)},

@@ -190,6 +190,24 @@ def test_a_viewer_takes_no_snapshot(look, fake):
     assert page.locator("text=MCAP snapshot").count() == 0
 
 
+def test_forms_have_units_and_say_what_an_empty_field_means(look):
+    page = open_tab(look, "Functions")
+    form = page.locator(".panel:has(h2:text-is('move absolute'))")
+    assert form.locator("label").all_inner_texts() == [
+        "target in mm",
+        "velocity in mm/s (optional)",
+        "acceleration in mm/s² (optional)",
+        "jerk in mm/s³ (optional)",
+    ]
+    assert "largest value; empty: P-AXIS-00212" in form.inner_text()
+    page.click("text='PTP test'")
+    page.wait_for_selector("label:text-is('Velocity in mm/s')")
+    page.wait_for_selector("small:text-is('empty: P-AXIS-00001')")
+    assert "Position 1 in mm" in page.inner_text("main")
+    units = "[{unit: '°, mm'}, {unit: 's, mm, °'}, {}].map((one) => it.argumentUnit(one, {unit: 'deg'}))"
+    assert page.evaluate(f"import('/static/format.js').then((it) => {units})") == ["°", "s, mm, °", ""]
+
+
 def test_the_online_page_shows_each_feed_enable(look, server, fake):
     """TX1250 4.3: Controller, Feed Fw, Feed Bw, from the bits of the state."""
     page = open_tab(look, "Online")

@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import pytest
 from fake_machine import Fake
-from web_browser_support import InThread, eventually, open_page, until
+from web_browser_support import DESKTOP, InThread, eventually, open_page, until
 
 LOST = {
     "pointerup": "() => 0",
@@ -73,6 +73,26 @@ def test_a_key_beside_the_pointer_does_not_keep_a_jog(look, fake):
     page.wait_for_timeout(200)
     page.keyboard.up("Enter")
     assert len(jogs(fake)) == sent
+
+
+def test_lines_and_offsets_are_within_a_desktop(look):
+    page = look(command=True)
+    lines = page.locator(".operate .lines").bounding_box()
+    assert lines["y"] + lines["height"] <= DESKTOP["height"], "a line that Follow or Find shows is seen"
+    table = page.locator(".scroll:has(.offsets)")
+    assert table.evaluate("(one) => one.scrollWidth <= one.clientWidth"), (
+        "buttons that teach are seen beside their offset"
+    )
+    assert table.locator("thead th").all_inner_texts() == ["Offset", "X mm", "Y mm", "Z mm"]
+
+
+def test_a_program_that_has_not_begun_has_no_progress(look, fake):
+    page = look()
+    bar = "document.querySelector('.operate progress').value"
+    fake.state["channel"] |= {"state": "hold", "active": True, "progress": 0.07}
+    until(page, f"{bar} === 0.07")
+    fake.state["channel"] |= {"state": "ready", "active": False}
+    until(page, f"{bar} === 0")
 
 
 def test_jog_messages_come_every_50_ms(look, fake):

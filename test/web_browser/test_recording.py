@@ -1,5 +1,7 @@
 """Pages of a recording, on the true server: each page has a time of its own."""
 
+import asyncio
+import threading
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -13,7 +15,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.recording.opened import OpenRecording
 from cnc_ptp.web.access.access import Access
 from cnc_ptp.web.access.guard import Names
-from cnc_ptp.web.faces.recorded_face import recorded_face
+from cnc_ptp.web.faces.recorded_face import RecordedFace, recorded_face
 from cnc_ptp.web.hub import Hub
 from cnc_ptp.web.programs.programs import ProgramFolder
 from cnc_ptp.web.server import Server
@@ -102,6 +104,25 @@ def test_what_one_page_plays_moves_no_other(look_at):
     until(standing, "app.store.time > 4.5")
     assert playing.evaluate("app.store.time") - paused < 0.2  # the states that were on their way
     assert standing.locator("button:text-is('Pause')").count() == 1
+
+
+def test_a_seek_that_takes_long_does_not_jump_back(look_at, monkeypatch):
+    page, may_answer = look_at(), threading.Event()
+    answered = RecordedFace.seek
+
+    async def slow(self, time):
+        while not may_answer.is_set():
+            await asyncio.sleep(0.01)
+        return await answered(self, time)
+
+    monkeypatch.setattr(RecordedFace, "seek", slow)
+    page.evaluate(f"() => {{ {SLIDER}.value = 5; {SLIDER}.dispatchEvent(new Event('change')); }}")
+    page.wait_for_selector("output:text-is('5.000 s is read …')")
+    page.wait_for_timeout(1000)
+    assert page.evaluate(f"{SLIDER}.value") == "5"
+    may_answer.set()
+    until(page, "app.store.time === 5")
+    page.wait_for_selector("output:text-matches('^5.000 s of')")
 
 
 def test_it_plays_to_its_end_and_begins_again(look_at):

@@ -200,6 +200,23 @@ def test_measures_and_spectrum_against_closed_forms(look):
     assert abs(amplitude - 5) < 1e-3 and other < 1e-3
 
 
+def test_neighbouring_ticks_differ_and_none_is_minus_zero(look):
+    page = look("alarms")
+    found = module(
+        page,
+        "scope/graphs.js",
+        """const of = (step, ...values) => it.ticks(null, values, 1, 50, step);
+        return [of(0.001, 99.999, 100, 100.001), of(0.1, -1e-16, 0.1), of(50, 0, 50), of(1e-8, 1e-8)];""",
+    )
+    assert found == [["99.999", "100.000", "100.001"], ["0", "0.1"], ["0", "50"], ["1.00e-8"]]
+
+
+def test_measures_have_units(look):
+    page = look("scope")
+    page.wait_for_selector(".measures th:text-is('x.set_velocity in mm')")
+    page.wait_for_selector(".measures th:text-is('x.following_error in mm')")
+
+
 def test_rings_keep_what_came_and_fill_gaps(look):
     page = look("alarms")
     found = module(

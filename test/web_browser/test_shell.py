@@ -234,6 +234,14 @@ def test_the_end_of_the_machine_is_shown(look, server, fake):
     assert "No machine" in page.inner_text(".pill")
 
 
+def test_a_machine_that_moves_and_tells_nothing_new_is_not_shown_as_running(look, fake):
+    page = look()
+    fake.state["channel"]["state"] = "running"
+    page.wait_for_selector(".pill[data-kind=good]:text-is('Running')")
+    page.evaluate("() => { app.store.take = () => {}; }")
+    page.wait_for_selector(".pill[data-kind=warn]:text-is('No news')")
+
+
 def test_texts_are_never_markup(look, server, fake):
     page = look("program", command=True)
     page.wait_for_selector(".programs >> text=<script>")

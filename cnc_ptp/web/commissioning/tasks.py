@@ -111,7 +111,7 @@ class Tasks:
             self._running[number] = process
             if number in self._cancelled:
                 process.terminate()
-            tell({"type": "progress", "task": number, "text": f"{' '.join(words[:3])} runs"})
+            tell({"type": "progress", "task": number, "text": f"{words[0]} runs"})
             try:
                 text = await self._read(number, process, tell)
                 status = await process.wait()

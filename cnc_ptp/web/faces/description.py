@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from math import isfinite
 from pathlib import Path
@@ -14,8 +15,12 @@ from cnc_ptp.parameters.view.axis_view import axis_view, is_facing
 from cnc_ptp.parameters.view.channel_view import channel_view
 from cnc_ptp.parameters.view.gears import active_gear
 from cnc_ptp.parameters.view.spindle_view import spindle_view
+from cnc_ptp.protocol.command_help import ArgumentText, argument_text
 from cnc_ptp.protocol.commands import COMMANDS, INTERNAL, OF_CHANNELS, OF_PLC, Argument
 from cnc_ptp.web.access.rights import NOT_FROM_PAGE_ARGUMENTS, refused_from_pages
+
+LINK = re.compile(r" ?\(\[[^\]]*\]\([^)]*\)\)|\[([^\]]*)\]\([^)]*\)")
+"""To another document: one in brackets is left out, of another one its text stays."""
 
 
 def describe_units(
@@ -73,11 +78,11 @@ def axis_limits(parameters: ParameterSet, cycle_time: float) -> dict[str, Any]:
 
 
 def describe_commands() -> dict[str, dict[str, Any]]:
-    """Kind of unit -> command -> arguments, of those that pages may give: kind, whether required, choices."""
+    """Kind of unit -> command -> arguments, of those that pages may give: kind, whether required, choices, texts."""
     return {
         kind: {
             command: {
-                name: describe_argument(argument)
+                name: describe_argument(argument, argument_text(kind, command, name))
                 for name, argument in arguments.items()
                 if name not in OF_PLC | OF_CHANNELS | NOT_FROM_PAGE_ARGUMENTS
             }
@@ -88,5 +93,11 @@ def describe_commands() -> dict[str, dict[str, Any]]:
     }
 
 
-def describe_argument(argument: Argument) -> dict[str, Any]:
-    return {"kind": argument.kind, "required": argument.required, "choices": list(argument.choices)}
+def describe_argument(argument: Argument, text: ArgumentText) -> dict[str, Any]:
+    told = {name: plain(value) for name, value in text._asdict().items()}
+    return {"kind": argument.kind, "required": argument.required, "choices": list(argument.choices), **told}
+
+
+def plain(text: str) -> str:
+    """Without the marks and links of a document."""
+    return LINK.sub(r"\1", text).replace("`", "")

@@ -36,5 +36,12 @@ export function bytes(size) {
 
 export const percent = (value, decimals = 0) => (typeof value === "number" ? `${fixed(value, decimals)} %` : MISSING);
 
+/** Unit of an argument of a command for an axis of mm or of degrees: the texts of the server have both. */
+export function argumentUnit({ unit }, { unit: length }) {
+  const both = (unit || "").split(", ");
+  const [straight, turns] = [both.find((one) => one.startsWith("mm")), both.find((one) => one.startsWith("°"))];
+  return both.length === 2 && straight && turns ? (length === "deg" ? turns : straight) : unit || "";
+}
+
 /** deg is what the server says, ° what people read. */
 export const unitSign = (unit) => ({ deg: "°", "deg/s": "°/s", "deg/s^2": "°/s²", "mm/s^2": "mm/s²", "mm/s^3": "mm/s³", "deg/s^3": "°/s³" })[unit] || unit || "";

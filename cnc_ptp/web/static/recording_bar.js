@@ -14,7 +14,7 @@ export function recordingBar(app) {
   speed.value = "1";
   const play = button("Play", () => setSpeed(isPlaying ? 0 : Number(speed.value)), { "aria-pressed": "false" });
   const bar = h("footer", { class: "recording-bar", hidden: true, "aria-label": "Recording" }, play, speed, slider, shown);
-  let [isPlaying, touched, told, followed] = [false, -Infinity, -Infinity, NaN];
+  let [isPlaying, touched, told, followed, asked] = [false, -Infinity, -Infinity, NaN, 0]; // asked: seeks without an answer
 
   const isEnd = (time) => time > store.machine.end - STEP; // it may end between two steps
 
@@ -22,8 +22,14 @@ export function recordingBar(app) {
     touched = performance.now();
     followed = Number(slider.value);
     const time = isEnd(followed) ? store.machine.end : followed;
-    show(time);
-    if (await app.request("seek", { time })) store.tell("seek", time);
+    say(shown, `${fixed(time, 3)} s is read …`);
+    asked += 1;
+    const isThere = await app.request("seek", { time });
+    asked -= 1;
+    if (asked > 0) return; // another one came meanwhile
+    touched = performance.now();
+    show(isThere ? time : store.time);
+    if (isThere) store.tell("seek", time);
   }
 
   async function setSpeed(wanted) {
@@ -42,7 +48,7 @@ export function recordingBar(app) {
   }
 
   function follow() {
-    if (bar.hidden || performance.now() - touched < HELD || followed === store.time) return;
+    if (bar.hidden || asked > 0 || performance.now() - touched < HELD || followed === store.time) return;
     followed = store.time;
     slider.value = store.time;
     show(store.time);

@@ -4,6 +4,7 @@ import { fixed } from "./format.js";
 import { showHelp } from "./help.js";
 import { LONGEST_FOR_JOGS } from "./round_trip.js";
 
+const [LOOK, SILENT] = [500, 1500]; // ms from one look to the next; without a new time of a machine that moves
 const WORDS = { running: "Running", hold: "Feed hold", waiting: "Waiting", stopping: "Stopping", stopped: "Stopped" };
 
 export function statusBar(app) {
@@ -14,8 +15,12 @@ function machine(app) {
   const { store } = app;
   const [name, state, time] = [h("span", { class: "machine-name" }), h("span", { class: "pill", role: "status" }), h("span", { class: "machine-time number" })];
   const way = h("span", { class: "round-trip", title: "Time of a message to the server and back" });
+  let [newest, since] = [NaN, 0];
   const show = () => {
-    const [kind, text] = machineState(store);
+    let [kind, text] = machineState(store);
+    if (store.time !== newest) [newest, since] = [store.time, performance.now()];
+    // it is told to be gone after 5 s; what it does is not known before
+    if (kind === "good" && performance.now() - since > SILENT) [kind, text] = ["warn", "No news"];
     state.dataset.kind = kind;
     say(state, text);
     say(name, store.machine?.name || "");
@@ -26,6 +31,7 @@ function machine(app) {
     say(way, Number.isFinite(ms) ? `${Math.round(ms)} ms` : "");
     way.dataset.kind = Number.isFinite(ms) && ms > LONGEST_FOR_JOGS ? "warn" : "";
   });
+  setInterval(show, LOOK);
   show();
   return h("div", { class: "group" }, name, state, time, way);
 }

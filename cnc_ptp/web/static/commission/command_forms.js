@@ -1,5 +1,6 @@
 // A form for each command of a unit, made of what the server says about its arguments.
 import { field, h, panel, select } from "../dom.js";
+import { argumentUnit } from "../format.js";
 
 /** `names` that the server knows and pages may give. */
 export function commandForms(app, unit, names) {
@@ -13,7 +14,7 @@ function form(app, unit, command, specification) {
   const inputs = Object.entries(specification).map(([name, argument]) => [name, argument, control(argument)]);
   const element = h(
     "form", {},
-    inputs.map(([name, argument, input]) => field(words(name) + (argument.required ? "" : " (optional)"), input)),
+    inputs.map(([name, argument, input]) => field(label(name, argument, unit), input, argument.meaning + (argument.left_out ? `; empty: ${argument.left_out}` : ""))),
     h("button", { type: "submit" }, words(command)),
   );
   element.addEventListener("submit", async (event) => {
@@ -29,6 +30,11 @@ function form(app, unit, command, specification) {
     if (answer) app.notices.show("info", `${unit.name}: ${words(command)} acts at cycle ${answer.cycle ?? "–"}.`);
   });
   return panel(words(command), h("fieldset", { class: "commands" }, element));
+}
+
+function label(name, argument, unit) {
+  const sign = argumentUnit(argument, unit);
+  return words(name) + (sign ? ` in ${sign}` : "") + (argument.required ? "" : " (optional)");
 }
 
 const words = (name) => name.replaceAll("_", " ");

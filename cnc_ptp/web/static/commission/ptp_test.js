@@ -1,11 +1,14 @@
 // PTP test: an axis goes to and fro between two positions, with the scope beside.
 import { button, field, h, numberOf, panel, press, say, toggle } from "../dom.js";
+import { argumentUnit, unitSign } from "../format.js";
 import { arrived } from "../motion.js";
 import { liveScope } from "./live_scope.js";
 
 export function ptpTest(app, unit) {
   const { store } = app;
   const [low, high] = unit.limits?.positions || [];
+  const known = store.machine.commands?.axis?.move_absolute || {};
+  const about = (name) => known[name === "first" || name === "second" ? "target" : name] || {};
   const numbers = {
     first: ["Position 1", clamp(0, low, high)], second: ["Position 2", clamp(50, low, high)], velocity: ["Velocity", ""], acceleration: ["Acceleration", ""], deceleration: ["Deceleration", ""], jerk: ["Jerk", ""],
   };
@@ -18,6 +21,7 @@ export function ptpTest(app, unit) {
   const status = h("p", { class: "muted", role: "status" }, "Not started.");
   const repeat = toggle("Repeat", (on) => press(repeat, on));
   const scope = liveScope(app, [[`${unit.name}.set_position`, 1], [`${unit.name}.actual_position`, 1], [`${unit.name}.set_velocity`, 2], [`${unit.name}.following_error`, 3]]);
+  const label = (text, name) => `${text} in ${argumentUnit(about(name), unit) || unitSign(unit.unit)}`;
   let active = false;
 
   async function start() {
@@ -30,7 +34,7 @@ export function ptpTest(app, unit) {
       for (const target of ends) {
         if (!active || !(await stroke(target))) return finish();
         strokes += 1;
-        say(status, `${strokes} strokes`);
+        say(status, `${strokes} stroke${strokes === 1 ? "" : "s"}`);
       }
     } while (active && repeats());
     finish();
@@ -55,7 +59,7 @@ export function ptpTest(app, unit) {
     "div", { class: "beside" },
     panel(
       "To and fro",
-      h("fieldset", { class: "commands" }, h("div", { class: "row end" }, Object.entries(numbers).map(([name, [text]]) => field(text, inputs[name])), field("Override in %", override)), h("div", { class: "row" }, button("Start", start, { class: "primary" }), repeat)),
+      h("fieldset", { class: "commands" }, h("div", { class: "row end" }, Object.entries(numbers).map(([name, [text]]) => field(label(text, name), inputs[name], about(name).left_out ? `empty: ${about(name).left_out}` : "")), field("Override in %", override)), h("div", { class: "row" }, button("Start", start, { class: "primary" }), repeat)),
       h("div", { class: "row" }, button("Stop", stop)), status,
     ),
     scope.element,

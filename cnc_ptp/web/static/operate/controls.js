@@ -25,7 +25,7 @@ export function controls(app) {
     say(start, store.ofChannel(isHeld(state) || state.state === "stopped" ? "Resume" : "Start"));
     press(hold, isHeld(state));
     for (const one of switches) if (state[one.dataset.switch] !== undefined) press(one, state[one.dataset.switch]);
-    progress.value = state.progress || 0;
+    progress.value = (state.state !== "ready" && state.progress) || 0; // of the program before
     const left = state.time_left >= 0 ? `${duration(state.time_left)} left` : "time left not known";
     say(line, state.active ? `${state.state} · line ${state.line} · ${Math.round((state.progress || 0) * 100)} % · ${left}` : state.state || "no channel");
   }

@@ -1,6 +1,6 @@
 // Zero offsets of the channel, with teach-in.
 import { button, h, panel, say } from "../dom.js";
-import { fixed } from "../format.js";
+import { fixed, unitSign } from "../format.js";
 
 const NAMES = ["G54", "G55", "G56", "G57", "G58", "G59"];
 const nameOf = (index) => (index === 0 ? "G53" : NAMES[index - 1] || `G159=${index}`);
@@ -9,7 +9,7 @@ export function offsets(app) {
   const { store } = app;
   const axes = store.unit(store.channel)?.axes?.map((axis) => axis.name ?? axis) || store.of("axis").map((axis) => axis.name.toUpperCase());
   const rows = NAMES.map((name, i) => row(app, i + 1, name, axes));
-  const head = h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Offset"), axes.map((axis) => h("th", { scope: "col" }, axis)), h("th", { scope: "col" }, "Teach")));
+  const head = h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Offset"), axes.map((axis) => h("th", { scope: "col" }, axis, " ", h("small", { class: "muted" }, unitOf(store, axis))))));
   const table = h("table", { class: "offsets" }, head, h("tbody", {}, rows.map((one) => one.element)));
   const [active, atStart] = [h("p", { class: "muted" }), h("p", { class: "muted" })];
   const element = panel(store.ofChannel("Zero offsets"), active, atStart, h("fieldset", { class: "commands" }, h("div", { class: "scroll" }, table)));
@@ -30,13 +30,20 @@ export function offsets(app) {
   return { element, end: () => ends.forEach((end) => end()) };
 }
 
+/** mm or ° of an axis by its name in programs. */
+function unitOf(store, name) {
+  const axis = store.unit(store.channel)?.axes?.find((one) => one.name === name);
+  return unitSign(store.unit(axis?.unit ?? name.toLowerCase())?.unit);
+}
+
 function row(app, index, name, axes) {
   const { channel } = app.store;
   const cells = axes.map((axis) => cell(app, index, name, axis));
   const teach = (axis) => app.command(channel, "teach_zero_offset", { index, ...(axis ? { axis } : {}), value: 0 }).then((answer) => answer && app.notices.show("info", `${name}: the present position is taught; it counts when ${name} is selected next.`));
-  const buttons = [button("all", () => teach(), { class: "small", "aria-label": `Teach ${name}, all axes` }), ...axes.map((axis) => button(axis, () => teach(axis), { class: "small", "aria-label": `Teach ${name} ${axis}` }))];
+  const all = button("Teach all", () => teach(), { class: "small", "aria-label": `Teach ${name}, all axes` });
+  const one = (axis) => button("Teach", () => teach(axis), { class: "small", "aria-label": `Teach ${name} ${axis}` });
   return {
-    element: h("tr", {}, h("th", { scope: "row" }, name), cells.map(({ element }) => h("td", {}, element)), h("td", {}, h("div", { class: "row" }, buttons))),
+    element: h("tr", {}, h("th", { scope: "row" }, name, all), cells.map(({ element }, i) => h("td", {}, element, one(axes[i])))),
     fill: (values, inactive) => axes.forEach((axis, i) => axis in values && cells[i].take(values[axis], inactive.includes(axis))),
   };
 }

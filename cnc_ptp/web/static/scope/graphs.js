@@ -7,6 +7,7 @@ const LIGHT = ["#1f5fa8", "#b3261e", "#17653a", "#8a4b00", "#6a3aa8", "#00707a",
 const DARK = ["#7db8f0", "#ff9d94", "#7fd6a0", "#f0c36a", "#c3a5f5", "#6fd3dc", "#f59bc9", "#b8c2cc"];
 const SYNC = "scope";
 const GRIP = 0.5;
+const MOST_DECIMALS = 6; // of a tick
 const DOTS = { paths: () => null, points: { show: true, size: 9 } };
 
 export const isDark = () => document.documentElement.dataset.theme === "dark";
@@ -14,12 +15,18 @@ export const colourOf = (index) => (isDark() ? DARK : LIGHT)[index % LIGHT.lengt
 const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
 function axis(label, extra = {}) {
-  return { stroke: style("--ink"), grid: { stroke: style("--line"), width: 1 }, ticks: { stroke: style("--line") }, label, labelSize: 22, size: 62, ...extra };
+  return { stroke: style("--ink"), grid: { stroke: style("--line"), width: 1 }, ticks: { stroke: style("--line") }, label, labelSize: 22, size: 62, values: ticks, ...extra };
+}
+
+/** Neighbouring ticks differ in what is written, and none is -0. */
+export function ticks(_plot, splits, _axis, _space, step) {
+  const decimals = Math.max(0, Math.ceil(-Math.log10(step)));
+  return splits.map((value) => (Math.abs(value) < step / 1000 ? "0" : decimals > MOST_DECIMALS ? value.toExponential(2) : value.toFixed(decimals)));
 }
 
 /** A graph of several channels over time. `onCursor(which, time)`: which is A or B. */
 export class TimeGraph {
-  constructor(host, channels, { height = 260, cursors, onCursor, title }) {
+  constructor(host, channels, { height = 260, unit = "", cursors, onCursor, title }) {
     this.channels = channels;
     this._host = host;
     this._cursors = cursors;
@@ -27,7 +34,7 @@ export class TimeGraph {
     const series = channels.map(({ name, index }) => ({ label: name, stroke: colourOf(index), width: 1.4, points: { show: false }, value: (_, value) => short(value) }));
     const options = {
       width: Math.max(200, host.clientWidth), height, title, legend: { live: true },
-      scales: { x: { time: false } }, axes: [axis("s", { size: 44 }), axis("")],
+      scales: { x: { time: false } }, axes: [axis("s", { size: 44 }), axis(unit)],
       series: [{ label: "Time in s", value: (_, value) => short(value, 7) }, ...series],
       cursor: { sync: { key: SYNC }, drag: { x: true, y: false, setScale: true } },
       hooks: { draw: [(plot) => this._drawCursors(plot)], setSelect: [(plot) => this._zoomed(plot)] },

@@ -1,6 +1,7 @@
 // The graphs of a scope with cursors and measures; drawn ten times a second while something has changed.
 import { field, h, panel, say, select } from "../dom.js";
 import { short } from "../format.js";
+import { unitOfSignal } from "./catalogue.js";
 import { CurveGraph, host, PlaneGraph, TimeGraph } from "./graphs.js";
 import { measure, spectrum } from "./measures.js";
 
@@ -71,11 +72,16 @@ export class Picture {
     this._graphs = [...byGraph].sort(([a], [b]) => a - b).map(([, channels]) => {
       const place = host(`Graph of ${channels.map(({ name }) => name).join(", ")}`);
       this._over.append(h("div", { class: "panel" }, place));
-      return new TimeGraph(place, channels, { height: this._height, cursors: this.cursors, onCursor: (name, time) => this.setCursor(name, time) });
+      return new TimeGraph(place, channels, { height: this._height, unit: this._units(channels).join(", "), cursors: this.cursors, onCursor: (name, time) => this.setCursor(name, time) });
     });
     if (this._graphs.length === 0) this._over.append(h("p", { class: "panel" }, "No signals. Add one."));
     this._fillChoices();
     this._seen = -1;
+  }
+
+  /** Each once. */
+  _units(channels) {
+    return [...new Set(channels.map(({ name }) => unitOfSignal(this.app.store, name)).filter(Boolean))];
   }
 
   _fillChoices() {
@@ -140,7 +146,7 @@ export class Picture {
       const found = measure(this.capture.between(i, begin, end), this.capture.sampleTime);
       const at = (time) => (time === null ? NaN : this.capture.valueAt(i, time));
       const values = [found.min, found.max, found.mean, found.rms, found.peak, found.slope, at(A), at(B), at(B) - at(A)];
-      return [name, ...values.map((value) => short(value))];
+      return [[name, unitOfSignal(this.app.store, name)].filter(Boolean).join(" in "), ...values.map((value) => short(value))];
     });
     fillTable(this._measures, rows);
     say(this._between, A !== null && B !== null ? `B − A = ${short(B - A, 6)} s, ${short(1 / Math.abs(B - A))} Hz` : `over ${short(end - begin)} s`);
