@@ -559,7 +559,7 @@ def test_offsets_are_shown_set_and_taught(look, server, fake):
     eventually(page, lambda: cell.input_value() == "-4")
     page.click("[aria-label='Teach G55 Y']")
     eventually(page, lambda: commands(fake)[-1] == ("teach_zero_offset", {"index": 2, "axis": "Y", "value": 0}))
-    page.click("[aria-label='Teach G56, all axes']")
+    page.click("[aria-label='Teach all axes of G56']")
     eventually(page, lambda: commands(fake)[-1] == ("teach_zero_offset", {"index": 3, "value": 0}))
 
 

@@ -382,7 +382,7 @@ def test_a_taught_offset_and_the_curve_of_the_spindle(mill):
     page.locator("[aria-label='G55 X']").fill("7.5")
     page.locator("[aria-label='G55 X']").press("Enter")
     page.wait_for_selector(".notice >> text=G55 X = 7.500")
-    page.click("[aria-label='Teach G56, all axes']")
+    page.click("[aria-label='Teach all axes of G56']")
     until(page, "document.querySelector('[aria-label=\\'G56 X\\']').value === '1.5'")
     page.keyboard.press("Alt+Digit4")
     page.select_option("label:text-is('Unit') + select", "s")

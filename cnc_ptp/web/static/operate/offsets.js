@@ -40,7 +40,7 @@ function row(app, index, name, axes) {
   const { channel } = app.store;
   const cells = axes.map((axis) => cell(app, index, name, axis));
   const teach = (axis) => app.command(channel, "teach_zero_offset", { index, ...(axis ? { axis } : {}), value: 0 }).then((answer) => answer && app.notices.show("info", `${name}: the present position is taught; it counts when ${name} is selected next.`));
-  const all = button("Teach all", () => teach(), { class: "small", "aria-label": `Teach ${name}, all axes` });
+  const all = button("Teach all", () => teach(), { class: "small", "aria-label": `Teach all axes of ${name}` });
   const one = (axis) => button("Teach", () => teach(axis), { class: "small", "aria-label": `Teach ${name} ${axis}` });
   return {
     element: h("tr", {}, h("th", { scope: "row" }, name, all), cells.map(({ element }, i) => h("td", {}, element, one(axes[i])))),
