@@ -394,7 +394,7 @@ def test_the_ptp_test_goes_to_and_fro(mill):
     page = mill("commission")
     page.click("[role=tab]:text-is('PTP test')")
     page.fill("label:text-is('Position 1 in mm') + input", "4")
-    page.fill("label:text-is('Position 2') + input", "1")
+    page.fill("label:text-is('Position 2 in mm') + input", "1")
     page.click("button.primary >> text=Start")
     page.wait_for_selector("text=2 strokes")
     assert page.evaluate("app.store.units.x.set_position") == 1
@@ -532,7 +532,7 @@ def test_the_simulated_drive_and_a_service_channel_that_is_not_there(mill):
 def test_an_empty_position_is_not_zero(mill):
     page = mill("commission")
     page.click("[role=tab]:text-is('PTP test')")
-    page.fill("label:text-is('Position 2') + input", "")
+    page.fill("label:text-is('Position 2 in mm') + input", "")
     page.click("button.primary >> text=Start")
     page.wait_for_timeout(300)
     page.wait_for_selector("text=Not started.")
@@ -616,7 +616,7 @@ def test_the_chosen_channel_is_the_one_that_is_operated(two_channels, programs):
     assert {unit for unit, _ in given()} == {"channel2"}
     choose(page, "channel1")
     page.wait_for_selector(".program-name >> text=No program is loaded")
-    assert page.locator(".offsets thead th").all_inner_texts() == ["Offset", "X", "Teach"]
+    assert page.locator(".offsets thead th").all_inner_texts() == ["Offset", "X mm"]
     manual(page, "G1 X2 F6000")
     until(page, "Math.abs(app.store.units.x.set_position - 2) < 1e-9")
     assert given()[-1] == ("channel1", "mdi")

@@ -17,7 +17,8 @@ export function spindleCurve(app, unit) {
       return;
     }
     const gears = (answer.gears || []).filter(({ points }) => points.length > 0);
-    say(status, gears.length ? "" : "This spindle has no curve.");
+    if (gears.length) status.remove();
+    else say(status, "This spindle has no curve.");
     for (const gear of gears) {
       const place = host(`Curve of gear ${gear.gear}`);
       element.append(panel(`Gear ${gear.gear}: ${gear.kind}`, place, table(gear)));
