@@ -109,12 +109,17 @@ class SuperimposedCommands:
             axis.refuse(MOVE, VELOCITY_TOO_HIGH, reason, velocity=base + velocity, limit=highest)
 
     def _make_room(self, cycle: int, distance: float) -> None:
-        """Raises 120002 and 120003 where the sum ends beyond a soft limit; motion at a velocity ends earlier there."""
+        """Raises 120002 and 120003 where the sum ends beyond a soft limit; motion at a velocity ends earlier there.
+
+        It does not end later for a distance that leads away from its soft limit: it may come there before that has been
+        covered, or the superimposed motion may be stopped.
+        """
         axis, ptp, job = self._axis, self._axis.ptp, self._axis.ptp.job
         if axis.state == S.SYNCHRONIZED_MOTION or isinf(ptp.rest):
             return
-        nearer = ptp.rest - distance
-        if job is None or not axis.jogs_to_limit or leads_past(*ptp.state(cycle)[:3], nearer, job.limits):
+        now, nearer = ptp.state(cycle)[:3], ptp.rest - distance
+        leads_there = distance * (ptp.rest - now[0]) > 0.0
+        if job is None or not axis.jogs_to_limit or not leads_there or leads_past(*now, nearer, job.limits):
             axis.checks.soft_limits(MOVE, ptp.rest + axis.shift(cycle) + distance)
         else:
             ptp.continue_to(cycle, nearer, job.limits, jog=job.jog)

@@ -420,6 +420,24 @@ def test_a_motion_at_a_velocity_still_ends_at_the_soft_limit() -> None:
     ]
 
 
+def test_a_distance_away_from_the_soft_limit_lets_no_motion_end_beyond_it() -> None:
+    """Seeds 400711, 401393 and 401467 of bench.random_commands: the motion ended later by a distance to come."""
+    for stop in (False, True):
+        bench = axis_bench(soft_limit_positive=1000.0)
+        bench.accepted("move_velocity", velocity=500.0, deceleration=50.0)
+        bench.run(300)
+        bench.accepted("move_superimposed", distance=-200.0, velocity_difference=20.0, **OWN)
+        if stop:
+            bench.run(2000)
+            bench.accepted("stop")
+        run_to_standstill(bench)
+        assert max(bench.column("set_position")) <= 1000.0 + 1e-9
+    bench = axis_bench(soft_limit_positive=1000.0, soft_limit_negative=-1000.0)
+    bench.accepted("move_velocity", velocity=500.0)
+    bench.run(300)
+    assert bench.refusal("move_superimposed", distance=-1e300) == refused(120003, target=-1e300, limit=-1000.0)
+
+
 def test_it_is_refused_where_it_would_lead_beyond_a_soft_limit() -> None:
     bench = axis_bench(soft_limit_positive=1000.0)
     bench.accepted("move_absolute", target=950.0, **DYNAMICS)

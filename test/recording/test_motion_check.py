@@ -267,6 +267,19 @@ def test_soft_limits_move_with_set_position(tmp_path: Path) -> None:
     assert check_recording(path).violations == []
 
 
+def test_homing_that_is_stopped_beyond_a_soft_limit(tmp_path: Path) -> None:
+    """Seed 400751 of `bench.random_commands`: the reference is at the limit, and it brakes behind it."""
+    scenario = """
+- {at: 0.0, to: z, do: home, position: -150}
+- {at: 0.07, to: z, do: stop}
+"""
+    path = make_run(tmp_path / "run.mcap", scenario)
+    with OpenRecording(path) as recording:
+        columns = recording.columns("/z/state", "set_position", "set_velocity")
+        assert columns["set_position"][-1] < -150.1 and columns["set_velocity"][-1] == 0.0
+    assert check_recording(path).violations == []
+
+
 def test_an_abrupt_stop_is_told(tmp_path: Path) -> None:
     """Its deceleration is above A- of the axis (2400 mm/s²), within P-AXIS-00008: told, and no violation."""
     scenario = """

@@ -301,8 +301,9 @@ class AxisCheck:
             rows = slice(self.stretches.row(order.cycle), None)
             low[rows], high[rows] = parameters.soft_limit_negative, parameters.soft_limit_positive
         shift = self._shift()
-        free = ~self.referenced | self.error | since(self.led | self.external, self.resting) | self._unknown_shift()
-        free |= and_next(self.state == S.HOMING)  # it brakes behind its marker, wherever that is
+        homing = self.state == S.HOMING  # it brakes behind its marker, wherever that is; or is stopped while it does
+        free = and_next(since(self.led | self.external | homing, self.resting)) | self._unknown_shift()
+        free |= ~self.referenced | self.error
         blur = PLACES * np.spacing(np.abs(points.position) + np.abs(shift))
         blur += np.where(shift != 0.0, own.jerk * points.cycle_time**3, 0.0)
         dx = np.concatenate(([0.0], np.where(self.laws.placed, 0.0, np.diff(points.position))))
