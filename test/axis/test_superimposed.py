@@ -421,7 +421,7 @@ def test_a_motion_at_a_velocity_still_ends_at_the_soft_limit() -> None:
 
 
 def test_a_distance_away_from_the_soft_limit_lets_no_motion_end_beyond_it() -> None:
-    """Seeds 400711, 401393 and 401467 of bench.random_commands: the motion ended later by a distance to come."""
+    """Seeds 400711 and 401393 of bench.random_commands: the motion ended later by a distance to come."""
     for stop in (False, True):
         bench = axis_bench(soft_limit_positive=1000.0)
         bench.accepted("move_velocity", velocity=500.0, deceleration=50.0)

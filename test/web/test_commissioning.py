@@ -9,6 +9,7 @@ from web_support import MILL, site
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.web.commissioning.changed_machine import write_changed
+from cnc_ptp.web.faces.description import describe_commands, plain
 
 VALUES = "/x:\n  ros__parameters:\n    lr_param: {frict_comp: 0}\n"
 
@@ -72,3 +73,19 @@ def test_a_task_is_cancelled(machine):
             assert (await page.ask("identify", axis="x", what="friction"))["ok"]
 
     asyncio.run(story())
+
+
+def test_arguments_have_their_texts_without_the_marks_of_a_document():
+    commands = describe_commands()
+    mode = commands["axis"]["move_absolute"]["buffer_mode"]
+    assert (mode["unit"], mode["meaning"]) == ("", "how it follows an active motion")
+    assert commands["axis"]["move_velocity"]["velocity"]["unit"] == "mm/s, °/s"
+    texts = [
+        text
+        for kind in commands.values()
+        for each in kind.values()
+        for one in each.values()
+        for text in (one["meaning"], one["left_out"])
+    ]
+    assert texts and not [text for text in texts if "](" in text or "`" in text]
+    assert plain("a `switch` of [ptp](ptp.md) ([more](more.md))") == "a switch of ptp"

@@ -206,9 +206,16 @@ def test_neighbouring_ticks_differ_and_none_is_minus_zero(look):
         page,
         "scope/graphs.js",
         """const of = (step, ...values) => it.ticks(null, values, 1, 50, step);
-        return [of(0.001, 99.999, 100, 100.001), of(0.1, -1e-16, 0.1), of(50, 0, 50), of(1e-8, 1e-8)];""",
+        return [of(0.001, 99.999, 100, 100.001), of(0.1, -1e-16, 0.1), of(50, 0, 50), of(2.5, 2.5, 5, 7.5), of(0.25, -0.25, 0.5), of(1e-8, 1e-8)];""",
     )
-    assert found == [["99.999", "100.000", "100.001"], ["0", "0.1"], ["0", "50"], ["1.00e-8"]]
+    assert found == [
+        ["99.999", "100.000", "100.001"],
+        ["0", "0.1"],
+        ["0", "50"],
+        ["2.5", "5.0", "7.5"],
+        ["-0.25", "0.50"],
+        ["1.00e-8"],
+    ]
 
 
 def test_measures_have_units(look):

@@ -18,9 +18,11 @@ function axis(label, extra = {}) {
   return { stroke: style("--ink"), grid: { stroke: style("--line"), width: 1 }, ticks: { stroke: style("--line") }, label, labelSize: 22, size: 62, values: ticks, ...extra };
 }
 
-/** Neighbouring ticks differ in what is written, and none is -0. */
+/** As many decimals as the step has, so that each tick is what is written at it; none is -0. */
 export function ticks(_plot, splits, _axis, _space, step) {
-  const decimals = Math.max(0, Math.ceil(-Math.log10(step)));
+  const isWhole = (value) => Math.abs(value - Math.round(value)) < 1e-6 * value;
+  let decimals = 0;
+  while (decimals <= MOST_DECIMALS && !isWhole(step * 10 ** decimals)) decimals += 1;
   return splits.map((value) => (Math.abs(value) < step / 1000 ? "0" : decimals > MOST_DECIMALS ? value.toExponential(2) : value.toFixed(decimals)));
 }
 
